@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace semigeo::engine {
+
+/// Told what the engine does; the engine itself never prints. Calls come from any thread.
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  /// `amount` units of work (vertices times levels) are done.
+  virtual void worked(std::int64_t amount) { (void)amount; }
+  /// A task of a graph ended; `error` is empty when it succeeded.
+  virtual void task_ended(std::string_view task, std::string_view error) {
+    (void)task;
+    (void)error;
+  }
+};
+
+}  // namespace semigeo::engine

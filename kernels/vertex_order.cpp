@@ -1,0 +1,97 @@
+#include "kernels/vertex_order.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace semigeo::kernels {
+namespace {
+
+/// Spreads the low 21 bits of x so that two zero bits follow each.
+std::uint64_t spread(std::uint64_t x) {
+  x &= 0x1fffff;
+  x = (x | x << 32) & 0x1f00000000ffffu;
+  x = (x | x << 16) & 0x1f0000ff0000ffu;
+  x = (x | x << 8) & 0x100f00f00f00f00fu;
+  x = (x | x << 4) & 0x10c30c30c30c30c3u;
+  x = (x | x << 2) & 0x1249249249249249u;
+  return x;
+}
+
+}  // namespace
+
+std::vector<std::int32_t> locality_order(const Surface& surface) {
+  if (surface.points.empty()) return {};
+  Eigen::Vector3f low = surface.points.front();
+  Eigen::Vector3f high = low;
+  for (const auto& p : surface.points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const double extent = (high - low).cast<double>().maxCoeff();
+  const double cells = extent > 0 ? ((1 << 21) - 1) / extent : 0;
+
+  struct Key {
+    std::int32_t part;
+    std::int32_t vertex;
+    std::uint64_t code;
+  };
+  std::vector<Key> keys(surface.points.size());
+  for (std::size_t v = 0; v < keys.size(); ++v) {
+    const Eigen::Vector3d q = (surface.points[v] - low).cast<double>() * cells;
+    const std::uint64_t code = spread(static_cast<std::uint64_t>(q.x())) |
+                               spread(static_cast<std::uint64_t>(q.y())) << 1 |
+                               spread(static_cast<std::uint64_t>(q.z())) << 2;
+    keys[v] = {surface.part[v], static_cast<std::int32_t>(v), code};
+  }
+  std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
+    if (a.part != b.part) return a.part < b.part;
+    return std::pair(a.code, a.vertex) < std::pair(b.code, b.vertex);
+  });
+  std::vector<std::int32_t> order(keys.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) order[i] = keys[i].vertex;
+  return order;
+}
+
+Surface reordered(const Surface& surface, const std::vector<std::int32_t>& order) {
+  Surface result;
+  result.points.resize(order.size());
+  result.part.resize(order.size());
+  result.part_count = surface.part_count;
+  std::vector<std::int32_t> new_vertex(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    result.points[i] = surface.points[order[i]];
+    result.part[i] = surface.part[order[i]];
+    new_vertex[order[i]] = static_cast<std::int32_t>(i);
+  }
+
+  // Counting sort of the faces by lowest new vertex.
+  const auto lowest = [&](const std::array<std::int32_t, 3>& t) {
+    return std::min({new_vertex[t[0]], new_vertex[t[1]], new_vertex[t[2]]});
+  };
+  std::vector<std::int32_t> cursor(order.size() + 1, 0);
+  for (const auto& t : surface.triangles) ++cursor[lowest(t) + 1];
+  for (std::size_t v = 0; v < order.size(); ++v) cursor[v + 1] += cursor[v];
+  std::vector<std::int32_t> new_face(surface.triangles.size());
+  result.triangles.resize(surface.triangles.size());
+  for (std::size_t f = 0; f < surface.triangles.size(); ++f) {
+    const auto& t = surface.triangles[f];
+    new_face[f] = cursor[lowest(t)]++;
+    result.triangles[new_face[f]] = {new_vertex[t[0]], new_vertex[t[1]], new_vertex[t[2]]};
+  }
+
+  const auto moved = [&](std::int32_t h) {
+    return h == kNone ? kNone : halfedge(new_face[face_of(h)], corner_of(h));
+  };
+  result.twin.assign(surface.twin.size(), kNone);
+  for (std::size_t f = 0; f < surface.triangles.size(); ++f)
+    for (int i = 0; i < 3; ++i) {
+      const std::int32_t h = halfedge(static_cast<std::int32_t>(f), i);
+      result.twin[moved(h)] = moved(surface.twin[h]);
+    }
+  result.outgoing.resize(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    result.outgoing[i] = moved(surface.outgoing[order[i]]);
+  return result;
+}
+
+}  // namespace semigeo::kernels
