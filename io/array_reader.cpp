@@ -1,0 +1,86 @@
+#include "io/array_reader.hpp"
+
+#include <cstdint>
+#include <cstring>
+#include <memory>
+
+namespace semigeo::io {
+namespace {
+
+constexpr std::int64_t kBestDeflateRatio = 1032;  // of any deflate stream
+
+Hdf5File::Array open_checked(const Hdf5File& file, const std::string& path, int columns) {
+  Hdf5File::Array array = file.open_array(path);
+  const ArrayShape& shape = array.shape();
+  if (shape.columns != columns)
+    file.refuse(path, "has " + std::to_string(shape.columns) + " columns instead of " +
+                          std::to_string(columns));
+  if (array.is_virtual()) file.refuse(path, "is virtual: read what it shows");
+  if (shape.rows * shape.row_bytes() / kBestDeflateRatio > array.stored_bytes())
+    file.refuse(path, "promises " + std::to_string(shape.rows) + " rows but stores only " +
+                          std::to_string(array.stored_bytes()) + " bytes");
+  return array;
+}
+
+template <typename Stored, typename Result>
+void append_rows(const Hdf5File::Array& array, std::vector<Result>& values) {
+  for_each_chunk(array, [&](std::span<const std::byte> rows) {
+    for (std::size_t at = 0; at < rows.size(); at += sizeof(Stored)) {
+      Stored value;
+      std::memcpy(&value, rows.data() + at, sizeof value);
+      values.push_back(value);
+    }
+  });
+}
+
+template <typename Value>
+std::vector<Value> read_values(const Hdf5File& file, const std::string& path, int columns,
+                               ElementType type) {
+  const Hdf5File::Array array = open_checked(file, path, columns);
+  const ElementType found = array.shape().type;
+  const bool widens = type == ElementType::int64 && found == ElementType::int32;
+  if (found != type && !widens)
+    file.refuse(
+        path, "holds " + std::string(name_of(found)) + " instead of " + std::string(name_of(type)));
+  std::vector<Value> values;
+  values.reserve(static_cast<std::size_t>(array.shape().rows * columns));
+  if constexpr (std::is_same_v<Value, std::int64_t>)
+    if (widens) {
+      append_rows<std::int32_t>(array, values);
+      return values;
+    }
+  append_rows<Value>(array, values);
+  return values;
+}
+
+}  // namespace
+
+void for_each_chunk(const Hdf5File::Array& array,
+                    const std::function<void(std::span<const std::byte>)>& use) {
+  const ArrayShape& shape = array.shape();
+  if (shape.rows == 0) return;
+  const auto size = static_cast<std::size_t>(shape.chunk_bytes());
+  const auto rows = std::make_unique_for_overwrite<std::byte[]>(size);
+  for (std::int64_t i = 0; i < shape.chunk_count(); ++i) {
+    const EncodedChunk chunk = array.read_chunk(i);
+    if (!decode_chunk(shape, chunk.bytes, chunk.filter_mask, {rows.get(), size}))
+      array.file().refuse(array.path() + ", chunk " + std::to_string(i),
+                          "its bytes do not match their checksum");
+    use({rows.get(), static_cast<std::size_t>(shape.rows_in_chunk(i) * shape.row_bytes())});
+  }
+}
+
+std::vector<float> read_floats(const Hdf5File& file, const std::string& path, int columns) {
+  return read_values<float>(file, path, columns, ElementType::float32);
+}
+
+std::vector<double> read_doubles(const Hdf5File& file, const std::string& path, int columns) {
+  return read_values<double>(file, path, columns, ElementType::float64);
+}
+
+std::vector<std::int64_t> read_integers(const Hdf5File& file, const std::string& path,
+                                        int columns) {
+  return read_values<std::int64_t>(file, path, columns, ElementType::int64);
+}
+
+}  // namespace semigeo::io

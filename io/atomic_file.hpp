@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace semigeo::io {
+
+/// A file that appears under its final name whole or not at all. It is written under a temporary
+/// name in the same folder, ".<name>.<host>.<pid>.partial", and renamed by `commit`; without a
+/// commit the destructor removes it. Writers in different processes, on one host or several, do
+/// not meet; within a process one final name must have one writer at a time.
+class AtomicFile {
+ public:
+  /// Only composes the name; a leftover of the same name is removed.
+  explicit AtomicFile(std::filesystem::path final_path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  const std::filesystem::path& final_path() const { return final_path_; }
+  const std::filesystem::path& temporary_path() const { return temporary_path_; }
+
+  /// Forces what was written (and closed) to the disk; Error if that fails.
+  void sync() const;
+
+  /// Sync, rename to the final name (replacing what stood there), sync of the folder.
+  void commit();
+
+ private:
+  std::filesystem::path final_path_;
+  std::filesystem::path temporary_path_;
+  bool committed_ = false;
+};
+
+/// Writes a small file whole, by way of AtomicFile.
+void write_file_atomically(const std::filesystem::path& path, std::string_view content);
+
+/// Removes the temporary files in `folder` that dead processes of this host left; returns how many.
+/// Those of other hosts and of living processes stay. A folder that does not exist holds none.
+int remove_stale_partials(const std::filesystem::path& folder);
+
+}  // namespace semigeo::io

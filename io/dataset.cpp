@@ -1,0 +1,136 @@
+#include "io/dataset.hpp"
+
+#include <algorithm>
+
+#include "io/array_reader.hpp"
+#include "io/content_digest.hpp"
+#include "io/error.hpp"
+#include "io/vtkhdf.hpp"
+
+namespace semigeo::io {
+namespace {
+
+template <typename Value>
+Value attribute(const Hdf5File& file, const std::string& object, const char* name) {
+  const AttributeValue value = file.read_attribute(object, name);
+  if (const Value* known = std::get_if<Value>(&value)) return *known;
+  file.refuse(object, std::string("its attribute ") + name + " has the wrong type");
+}
+
+// Of a dataset of ours, whatever its state.
+void require_format(const Hdf5File& file) {
+  if (!file.has_attribute("/", "format") || !file.has_attribute("/", "format_version") ||
+      attribute<std::string>(file, "/", "format") != kDatasetFormat)
+    throw Error(file.path(), "", "is an HDF5 file but not a semigeo dataset",
+                "give a file that `semigeo run` made");
+  const auto version = attribute<std::int64_t>(file, "/", "format_version");
+  if (version != kDatasetFormatVersion)
+    throw Error(file.path(), "",
+                "has dataset format " + std::to_string(version) + ", this program reads " +
+                    std::to_string(kDatasetFormatVersion),
+                "use the version of semigeo that made it, or compute it again");
+}
+
+bool is_complete(const Hdf5File& file) {
+  return file.has_attribute("/", "complete") && attribute<std::int64_t>(file, "/", "complete") == 1;
+}
+
+const LevelArray* find_array(std::string_view name) {
+  const auto* found = std::ranges::find(kLevelArrays, name, &LevelArray::name);
+  return found == kLevelArrays.end() ? nullptr : found;
+}
+
+}  // namespace
+
+std::string level_path(std::int64_t level) {
+  const std::string digits = std::to_string(level);
+  return "/levels/" + std::string(digits.size() < 3 ? 3 - digits.size() : 0, '0') + digits;
+}
+
+Dataset::Dataset(const std::filesystem::path& path) : file_(Hdf5File::open(path)) {
+  require_format(file_);
+  if (!is_complete(file_)) file_.refuse("", "was not written to its end");
+  digest_ = text("digest");
+  creator_version_ = text("creator_version");
+  header_.parameters_json = text("parameters");
+  header_.input_name = text("input_name");
+  header_.input_xxh3 = text("input_xxh3");
+  header_.job_key = text("job_key");
+  header_.length_unit = text("length_unit");
+  header_.repairs_json = text("repairs");
+  const auto origin = attribute<std::vector<double>>(file_, "/", "origin");
+  if (origin.size() != 3) file_.refuse("/", "its attribute origin must have three values");
+  std::ranges::copy(origin, header_.origin.begin());
+  const std::vector<Hdf5Link> levels = file_.links("/levels");
+  if (levels.empty() || levels.size() > kMostLevels)
+    file_.refuse("/levels", "must hold 1 to " + std::to_string(kMostLevels) + " levels");
+  level_count_ = static_cast<int>(levels.size());
+  for (int k = 0; k < level_count_; ++k)
+    if ("/levels/" + levels[k].name != level_path(k))
+      file_.refuse("/levels", "its levels are not numbered from 000 without gaps");
+}
+
+std::string Dataset::text(const char* name) const {
+  return attribute<std::string>(file_, "/", name);
+}
+
+LevelInfo Dataset::level(int level) const {
+  if (level < 0 || level >= level_count_)
+    throw Error(path(), level_path(level), "does not exist",
+                "the levels are 0 to " + std::to_string(level_count_ - 1));
+  const std::string path = level_path(level);
+  LevelInfo info;
+  info.iteration = attribute<std::int64_t>(file_, path, "iteration");
+  info.step = attribute<double>(file_, path, "step");
+  info.scale = attribute<double>(file_, path, "scale");
+  info.mean_edge_length = attribute<double>(file_, path, "mean_edge_length");
+  info.parts = attribute<std::int64_t>(file_, path, "parts");
+  info.vertices = file_.open_array(path + "/points").shape().rows;
+  info.triangles = file_.open_array(path + "/triangles").shape().rows;
+  for (const LevelArray& array : kLevelArrays) {
+    const std::string name = path + "/" + array.name;
+    const ArrayShape shape = file_.open_array(name).shape();
+    if (shape.type != array.type || shape.columns != array.columns ||
+        shape.rows != (array.per_triangle ? info.triangles : info.vertices))
+      file_.refuse(name, "has not the type or shape that a level's " + std::string(array.name) +
+                             " must have");
+  }
+  return info;
+}
+
+std::vector<float> Dataset::read_floats(int level, std::string_view name) const {
+  this->level(level);
+  const LevelArray* array = find_array(name);
+  if (array == nullptr || array->type != ElementType::float32)
+    throw Error(path(), level_path(level) + "/" + std::string(name), "is no array of floats");
+  return io::read_floats(file_, level_path(level) + "/" + array->name, array->columns);
+}
+
+std::vector<std::int64_t> Dataset::read_integers(int level, std::string_view name) const {
+  this->level(level);
+  const LevelArray* array = find_array(name);
+  if (array == nullptr || array->type == ElementType::float32)
+    throw Error(path(), level_path(level) + "/" + std::string(name), "is no array of integers");
+  return io::read_integers(file_, level_path(level) + "/" + array->name, array->columns);
+}
+
+void Dataset::verify() const {
+  for (int k = 0; k < level_count_; ++k) level(k);
+  check_vtkhdf(file_);
+  const std::string found = content_digest(file_);
+  if (found != digest_)
+    file_.refuse("attribute digest", "is " + digest_ + ", but the content has the digest " + found);
+}
+
+std::optional<std::string> complete_job_key(const std::filesystem::path& path) {
+  try {
+    const Hdf5File file = Hdf5File::open(path);
+    require_format(file);
+    if (!is_complete(file)) return std::nullopt;
+    return attribute<std::string>(file, "/", "job_key");
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace semigeo::io

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/dataset_format.hpp"
+#include "io/hdf5.hpp"
+
+namespace semigeo::io {
+
+struct LevelInfo : LevelAttributes {
+  std::int64_t vertices = 0;
+  std::int64_t triangles = 0;
+};
+
+/// Reads a dataset (io/DATASET.md). Every failure is an Error that names the file and the object.
+/// Sizes are checked against what the file holds before anything is allocated. One thread at a
+/// time.
+class Dataset {
+ public:
+  /// Opens read-only; refuses other formats, versions of the future, and unfinished files.
+  explicit Dataset(const std::filesystem::path& path);
+
+  const std::filesystem::path& path() const { return file_.path(); }
+  const DatasetHeader& header() const { return header_; }
+  const std::string& creator_version() const { return creator_version_; }
+  /// The content digest as stored: 32 hexadecimal digits.
+  const std::string& digest() const { return digest_; }
+
+  int level_count() const { return level_count_; }
+  /// Attributes and sizes; Error if an array is missing or does not fit the others.
+  LevelInfo level(int level) const;
+
+  /// An array of a level, row after row: points and normals 3 N floats, the others N.
+  std::vector<float> read_floats(int level, std::string_view name) const;
+  /// triangles (3 F), source_vertex (N), part (N).
+  std::vector<std::int64_t> read_integers(int level, std::string_view name) const;
+
+  /// Reads everything: every chunk against its checksum, all of it against the digest, every level
+  /// for completeness, /VTKHDF for conformance. Memory: one chunk.
+  void verify() const;
+
+ private:
+  std::string text(const char* name) const;
+
+  Hdf5File file_;
+  DatasetHeader header_;
+  std::string creator_version_;
+  std::string digest_;
+  int level_count_ = 0;
+};
+
+/// The job key of a complete dataset; nothing if the file is absent, unreadable or incomplete.
+/// Reads a few kB: what a scan of the whole archive can afford for every file.
+std::optional<std::string> complete_job_key(const std::filesystem::path& path);
+
+}  // namespace semigeo::io

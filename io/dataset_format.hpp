@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "io/hdf5.hpp"
+
+namespace semigeo::io {
+
+// What the writer and the reader of a dataset agree on; io/DATASET.md is its description.
+
+inline constexpr const char* kDatasetFormat = "semigeo-dataset";
+inline constexpr std::int64_t kDatasetFormatVersion = 1;
+inline constexpr int kMostLevels = 1000;  // three digits
+
+/// Where a dataset comes from; attributes of the root.
+struct DatasetHeader {
+  std::string parameters_json = "{}";
+  std::string input_name;  ///< as given by the user
+  std::string input_xxh3;  ///< XXH3_128 of the scan's bytes, 32 hexadecimal digits
+  std::string job_key;     ///< hash of everything the content depends on
+  std::string length_unit = "unknown";
+  std::string repairs_json = "{}";           ///< what was dropped or welded, with counts
+  std::array<double, 3> origin = {0, 0, 0};  ///< add to the points for the scan's coordinates
+};
+
+/// Attributes of one level; lengths in length_unit.
+struct LevelAttributes {
+  std::int64_t iteration = 0;  ///< smoothings since level 0
+  double step = 0;             ///< sampling step of the patches
+  double scale = 0;            ///< true sigma; strictly increasing from level to level
+  double mean_edge_length = 0;
+  std::int64_t parts = 0;  ///< connected parts
+};
+
+/// An array of a level: (N) or (N, columns) over its vertices, or over its triangles.
+struct LevelArray {
+  const char* name;
+  ElementType type;
+  int columns;
+  bool per_triangle;
+  bool connectivity;  ///< shared by the levels until one brings its own
+};
+inline constexpr std::array<LevelArray, 8> kLevelArrays = {{
+    {"points", ElementType::float32, 3, false, false},
+    {"normals", ElementType::float32, 3, false, false},
+    {"gaussian_curvature", ElementType::float32, 1, false, false},
+    {"mean_curvature", ElementType::float32, 1, false, false},
+    {"patch_completeness", ElementType::float32, 1, false, false},
+    {"triangles", ElementType::int64, 3, true, true},
+    {"source_vertex", ElementType::int64, 1, false, true},
+    {"part", ElementType::int32, 1, false, true},
+}};
+
+/// "/levels/007".
+std::string level_path(std::int64_t level);
+
+}  // namespace semigeo::io

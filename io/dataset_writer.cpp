@@ -1,0 +1,128 @@
+#include "io/dataset_writer.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "io/dataset.hpp"
+#include "io/error.hpp"
+#include "io/xdmf.hpp"
+
+namespace semigeo::io {
+namespace {
+
+const LevelArray& format_of(std::string_view name) {
+  return *std::ranges::find(kLevelArrays, name, &LevelArray::name);
+}
+
+void write_header(DigestedFile& file, const DatasetHeader& header) {
+  const std::vector<double> origin(header.origin.begin(), header.origin.end());
+  const std::pair<const char*, AttributeValue> attributes[] = {
+      {"format", kDatasetFormat},
+      {"format_version", kDatasetFormatVersion},
+      {"creator", "semigeo"},
+      {"creator_version", SEMIGEO_VERSION},
+      {"length_unit", header.length_unit},
+      {"origin", origin},
+      {"parameters", header.parameters_json},
+      {"input_name", header.input_name},
+      {"input_xxh3", header.input_xxh3},
+      {"job_key", header.job_key},
+      {"repairs", header.repairs_json},
+  };
+  for (const auto& [name, value] : attributes) file.write_attribute("/", name, value);
+}
+
+}  // namespace
+
+DatasetWriter::DatasetWriter(const std::filesystem::path& final_path, const DatasetHeader& header,
+                             Compression compression)
+    : target_(final_path),
+      file_(Hdf5File::create(target_.temporary_path(), final_path)),
+      compression_(compression) {
+  write_header(file_, header);
+  file_.create_group("/levels");
+}
+
+void DatasetWriter::begin_level() {
+  if (std::exchange(level_begun_, true)) return;
+  if (steps_.size() >= kMostLevels) throw std::invalid_argument("too many levels");
+  file_.create_group(level_path(static_cast<std::int64_t>(steps_.size())));
+}
+
+void DatasetWriter::write(const std::string& level, const LevelArray& format,
+                          const EncodedArray& array, std::int64_t rows) {
+  const ArrayShape& shape = array.shape;
+  if (shape.type != format.type || shape.columns != format.columns || shape.rows != rows)
+    throw std::invalid_argument(level + "/" + format.name + " does not fit the other arrays");
+  file_.write_array(level + "/" + format.name, array);
+}
+
+void DatasetWriter::write_connectivity(const EncodedConnectivity& connectivity) {
+  if (connectivity_pending_) throw std::invalid_argument("a level has one connectivity");
+  begin_level();
+  vertices_ = connectivity.part.shape.rows;
+  triangles_ = connectivity.triangles.shape.rows;
+  connectivity_level_ = level_path(static_cast<std::int64_t>(steps_.size()));
+  connectivity_pending_ = true;
+  write(connectivity_level_, format_of("triangles"), connectivity.triangles, triangles_);
+  write(connectivity_level_, format_of("source_vertex"), connectivity.source_vertex, vertices_);
+  write(connectivity_level_, format_of("part"), connectivity.part, vertices_);
+}
+
+void DatasetWriter::write_level(const LevelAttributes& attributes, const EncodedFields& fields) {
+  if (connectivity_level_.empty()) throw std::invalid_argument("level 0 brings no connectivity");
+  begin_level();
+  const std::string level = level_path(static_cast<std::int64_t>(steps_.size()));
+  if (!steps_.empty() && !(attributes.scale > steps_.back().value))
+    throw Error(target_.final_path(), level, "its scale does not exceed that of the level before",
+                "the scan has no extent at this scale: ask for fewer levels");
+  file_.write_attribute(level, "iteration", attributes.iteration);
+  file_.write_attribute(level, "step", attributes.step);
+  file_.write_attribute(level, "scale", attributes.scale);
+  file_.write_attribute(level, "mean_edge_length", attributes.mean_edge_length);
+  file_.write_attribute(level, "parts", attributes.parts);
+
+  write(level, format_of("points"), fields.points, vertices_);
+  write(level, format_of("normals"), fields.normals, vertices_);
+  write(level, format_of("gaussian_curvature"), fields.gaussian_curvature, vertices_);
+  write(level, format_of("mean_curvature"), fields.mean_curvature, vertices_);
+  write(level, format_of("patch_completeness"), fields.patch_completeness, vertices_);
+  if (!connectivity_pending_)
+    for (const LevelArray& array : kLevelArrays)
+      if (array.connectivity)
+        file_.link(connectivity_level_ + "/" + array.name, level + "/" + array.name);
+  steps_.push_back({attributes.scale, level, vertices_, triangles_, connectivity_pending_});
+  connectivity_pending_ = false;
+  level_begun_ = false;
+}
+
+std::string DatasetWriter::finish() {
+  if (steps_.empty() || level_begun_) throw std::invalid_argument("the last level is not complete");
+  write_vtkhdf(file_, vtkhdf_layout(steps_), compression_);
+  std::string digest = file_.digest().hex();
+  Hdf5File& file = file_.file();
+  file.write_attribute("/", "digest", digest);
+  file.flush();
+  file.write_attribute("/", "complete", std::int64_t{1});
+  file.close();
+  target_.sync();
+  try {
+    const Dataset written(target_.temporary_path());
+    written.verify();
+    if (written.digest() != digest)
+      throw Error(target_.final_path(), "", "its digest is not that of what was written");
+  } catch (const Error& error) {
+    throw Error(target_.final_path(), error.place(),
+                "what was just written reads back wrong (" + error.problem() + ")",
+                "check the disk and run again");
+  }
+  // The sidecar first: a dataset under its final name counts as done and is not looked at again.
+  std::filesystem::path sidecar = target_.final_path();
+  sidecar.replace_extension(".xdmf");
+  write_file_atomically(sidecar, xdmf_text(target_.final_path().filename().string(), steps_));
+  target_.commit();
+  return digest;
+}
+
+}  // namespace semigeo::io

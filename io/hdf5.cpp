@@ -1,0 +1,177 @@
+#include "io/hdf5.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include "io/error.hpp"
+#include "io/hdf5_library.hpp"
+
+namespace semigeo::io {
+namespace {
+
+herr_t keep_first(unsigned, const H5E_error2_t* error, void* text) noexcept {
+  *static_cast<std::string*>(text) = error->desc == nullptr ? "" : error->desc;
+  return 1;  // stop: the walk began at the innermost entry
+}
+
+Hdf5Handle file_access() {
+  Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V110);
+  H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
+  // Files are renamed when whole and never changed in place, so that locks protect nothing, and
+  // network file systems without locks would refuse to open them.
+  H5Pset_file_locking(access.get(), false, true);
+  return access;
+}
+
+herr_t collect_link(hid_t, const char* name, const H5L_info_t* info, void* data) noexcept {
+  try {
+    static_cast<std::vector<Hdf5Link>*>(data)->push_back(
+        {name, Hdf5Link::Kind::other, info->type == H5L_TYPE_HARD ? info->u.address : 0});
+    return 0;
+  } catch (...) {
+    return -1;
+  }
+}
+
+}  // namespace
+
+// Once per process: at exit HDF5 would flush what a full disk left it with, and crash.
+// Once per thread: HDF5 would print its error stack, and keeps that setting per thread.
+void prepare_library() {
+  static const int no_exit_handler = H5dont_atexit();
+  thread_local const int quiet = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  static_cast<void>(no_exit_handler);
+  static_cast<void>(quiet);
+}
+
+// HDF5's innermost reason; of its report on a system call only the system's own words.
+std::string innermost_reason() {
+  std::string text;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &text);
+  constexpr std::string_view kMark = "error message = '";
+  const std::size_t mark = text.find(kMark);
+  if (mark != std::string::npos) {
+    const std::size_t begin = mark + kMark.size();
+    text = text.substr(begin, text.find('\'', begin) - begin);
+  }
+  return text.empty() ? "HDF5 gives no reason" : text;
+}
+
+void Hdf5File::fail(const std::string& place, const std::string& action) const {
+  const std::string reason = innermost_reason();
+  const bool full = reason.find("No space left") != std::string::npos;
+  throw Error(shown_as_, place, "cannot " + action + ": " + reason,
+              full       ? "free some space and run again"
+              : writing_ ? "check the disk and run again"
+                         : "if it is one of semigeo's files it is damaged: compute it again");
+}
+
+void Hdf5File::refuse(const std::string& place, const std::string& problem) const {
+  throw Error(shown_as_, place, problem,
+              "the file is damaged or not one of semigeo's: compute it again");
+}
+
+std::int64_t Hdf5File::checked(std::int64_t result, const std::string& place,
+                               const char* action) const {
+  if (result < 0) fail(place, action);
+  return result;
+}
+
+std::int64_t Hdf5File::id() const {
+  prepare_library();
+  return handle_.get();
+}
+
+Hdf5File Hdf5File::create(const std::filesystem::path& file,
+                          const std::filesystem::path& shown_as) {
+  prepare_library();
+  const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation.get(), false);
+  const Hdf5Handle access = file_access();
+  Hdf5File result({}, shown_as.empty() ? file : shown_as, true);
+  result.handle_ = Hdf5Handle(
+      result.checked(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), "",
+                     "create it"),
+      H5Fclose);
+  return result;
+}
+
+Hdf5File Hdf5File::open(const std::filesystem::path& file, const std::filesystem::path& shown_as) {
+  prepare_library();
+  const Hdf5Handle access = file_access();
+  Hdf5File result({}, shown_as.empty() ? file : shown_as, false);
+  result.handle_ = Hdf5Handle(
+      result.checked(H5Fopen(file.c_str(), H5F_ACC_RDONLY, access.get()), "", "open it"), H5Fclose);
+  return result;
+}
+
+void Hdf5File::create_group(const std::string& path) {
+  const std::int64_t file = id();
+  const Hdf5Handle properties(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  H5Pset_obj_track_times(properties.get(), false);
+  Hdf5Handle group(
+      checked(H5Gcreate2(file, path.c_str(), H5P_DEFAULT, properties.get(), H5P_DEFAULT), path,
+              "create the group"),
+      H5Gclose);
+  checked(group.close(), path, "close the group");
+}
+
+void Hdf5File::link(const std::string& existing, const std::string& path) {
+  const std::int64_t file = id();
+  checked(H5Lcreate_hard(file, existing.c_str(), file, path.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+          path, "create the link");
+}
+
+void Hdf5File::flush() {
+  checked(H5Fflush(id(), H5F_SCOPE_LOCAL), "", "flush it");
+}
+
+void Hdf5File::close() {
+  prepare_library();
+  checked(handle_.close(), "", "close it");
+}
+
+Hdf5Handle Hdf5File::open_object(const std::string& path) const {
+  return {checked(H5Oopen(id(), path.c_str(), H5P_DEFAULT), path, "open the object"), H5Oclose};
+}
+
+bool Hdf5File::has(const std::string& path) const {
+  const std::int64_t file = id();
+  if (path == "/") return true;
+  for (std::size_t slash = 1; slash != std::string::npos;) {
+    slash = path.find('/', slash);
+    const std::string part = path.substr(0, slash);
+    if (H5Lexists(file, part.c_str(), H5P_DEFAULT) <= 0) return false;
+    if (slash != std::string::npos) ++slash;
+  }
+  return true;
+}
+
+std::vector<Hdf5Link> Hdf5File::links(const std::string& group) const {
+  const std::int64_t file = id();
+  std::vector<Hdf5Link> result;
+  checked(H5Literate_by_name(file, group.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_link,
+                             &result, H5P_DEFAULT),
+          group, "list the group");
+  for (Hdf5Link& entry : result) {
+    if (entry.address == 0) continue;  // a soft or external link
+    const std::string path = (group == "/" ? "" : group) + "/" + entry.name;
+    H5O_info_t info;
+    checked(H5Oget_info_by_name2(file, path.c_str(), &info, H5O_INFO_BASIC, H5P_DEFAULT), path,
+            "open the object");
+    if (info.type == H5O_TYPE_GROUP) entry.kind = Hdf5Link::Kind::group;
+    if (info.type == H5O_TYPE_DATASET) entry.kind = Hdf5Link::Kind::array;
+  }
+  std::ranges::sort(result, {}, &Hdf5Link::name);
+  return result;
+}
+
+std::uint64_t Hdf5File::address(const std::string& path) const {
+  H5O_info_t info;
+  checked(H5Oget_info_by_name2(id(), path.c_str(), &info, H5O_INFO_BASIC, H5P_DEFAULT), path,
+          "open the object");
+  return info.addr;
+}
+
+}  // namespace semigeo::io

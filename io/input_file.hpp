@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+
+namespace semigeo::io {
+
+/// A regular file opened for reading, read from front to back. Missing files, folders, pipes,
+/// missing permission and read errors are `Error`s that say which of them it was.
+class InputFile {
+ public:
+  explicit InputFile(std::filesystem::path path);
+  ~InputFile();
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  /// Bytes in the file when it was opened.
+  std::int64_t size() const { return size_; }
+  /// Bytes read so far.
+  std::int64_t position() const { return position_; }
+  /// Fills `bytes` and returns how many there were; fewer than asked only at the end of the file.
+  std::size_t read(std::span<char> bytes);
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+  std::int64_t size_ = 0;
+  std::int64_t position_ = 0;
+};
+
+}  // namespace semigeo::io

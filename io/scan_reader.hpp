@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "kernels/triangle_mesh.hpp"
+
+namespace semigeo::io {
+
+enum class ScanFormat { ply, obj, off, stl };
+
+/// The format that a file's name promises: its extension in any case, before a last ".gz" if there
+/// is one. Nothing for other names; the file is not looked at.
+std::optional<ScanFormat> scan_format(const std::filesystem::path& path);
+
+/// What a scan may hold before it is refused.
+struct ScanLimits {
+  std::int64_t max_vertices = 200'000'000;   ///< indices are 32 bits wide, so never above 2^31 - 2
+  std::int64_t max_triangles = 400'000'000;  ///< after cutting polygons into triangles
+  double max_coordinate = 1e30;              ///< keeps areas and volumes within a double's range
+};
+
+struct Scan {
+  kernels::TriangleMesh mesh;  ///< as the file lists it; STL: three points of its own per triangle
+  std::string format;          ///< "PLY binary little endian", "OBJ", "STL ascii, gzip", ...
+  std::int64_t polygons_triangulated = 0;  ///< faces with more than three corners
+  std::int64_t bytes_after_end = 0;        ///< not blank, behind all that the header promises
+  std::int64_t faces_skipped = 0;          ///< faces with one or two corners, or none
+};
+
+/// Reads a surface from PLY, OBJ, OFF or STL, each plain or gzip compressed. Everything in the file
+/// other than positions and faces is read over.
+///
+/// Every vertex is finite and every index valid in what it returns; it may still be degenerate or
+/// not a manifold. Everything else throws `Error`: no such file, another format than the name says,
+/// more promised in a header than the file holds, coordinates that are not finite, indices out of
+/// range, no vertices, no faces (a point cloud), more than `limits`.
+///
+/// Streams through a buffer of 1 MiB; memory is that of the mesh and never follows a promise of a
+/// header. Thread-safe for different calls.
+Scan read_scan(const std::filesystem::path& path, const ScanLimits& limits = {});
+
+}  // namespace semigeo::io

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/content_digest.hpp"
+
+namespace semigeo::io {
+
+/// One level of a dataset as a time step.
+struct VtkhdfStep {
+  double value = 0;   ///< the level's scale
+  std::string level;  ///< its group: "/levels/000"
+  std::int64_t vertices = 0;
+  std::int64_t triangles = 0;
+  bool new_connectivity = false;  ///< its triangles are not those of the step before
+};
+
+/// A per-vertex array of a level and its name in /VTKHDF/PointData.
+struct VtkhdfPointArray {
+  const char* name;
+  const char* source;
+  ElementType type;
+  int columns;
+};
+inline constexpr std::array<VtkhdfPointArray, 6> kVtkhdfPointArrays = {{
+    {"Normals", "normals", ElementType::float32, 3},
+    {"gaussian_curvature", "gaussian_curvature", ElementType::float32, 1},
+    {"mean_curvature", "mean_curvature", ElementType::float32, 1},
+    {"patch_completeness", "patch_completeness", ElementType::float32, 1},
+    {"part", "part", ElementType::int32, 1},
+    {"source_vertex", "source_vertex", ElementType::int64, 1},
+}};
+
+/// Everything that /VTKHDF holds, planned before any of it is written.
+struct VtkhdfLayout {
+  struct Table {
+    int columns = 1;
+    std::vector<std::int64_t> values;  ///< row after row
+  };
+  struct View {
+    ElementType type = ElementType::float32;
+    int columns = 1;
+    std::vector<VirtualPiece> pieces;
+  };
+  std::string type = "PolyData";
+  std::vector<std::int64_t> version = {2, 0};
+  std::int64_t steps = 0;
+  std::vector<double> values;                   ///< one per step
+  std::vector<std::int64_t> triangles_of_part;  ///< one part, or one per step
+  std::map<std::string, Table> tables;          ///< int64, by path relative to /VTKHDF
+  std::map<std::string, View> views;            ///< virtual, by path relative to /VTKHDF
+};
+
+/// VTKHDF 2.0 temporal PolyData over the levels: one part that all steps share if the
+/// connectivity never changes, else one part per step.
+VtkhdfLayout vtkhdf_layout(std::span<const VtkhdfStep> steps);
+
+/// Writes the group /VTKHDF; the arrays that the views show must exist.
+void write_vtkhdf(DigestedFile& file, const VtkhdfLayout& layout, Compression compression);
+
+/// Error naming the object that breaks a rule of VTKHDF or of how VTK's reader takes it. Reads
+/// the offsets and Polygons/Offsets, none of the big arrays.
+void check_vtkhdf(const Hdf5File& file);
+
+}  // namespace semigeo::io

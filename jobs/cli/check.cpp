@@ -1,0 +1,58 @@
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "io/dataset.hpp"
+#include "io/error.hpp"
+#include "jobs/cli/command.hpp"
+#include "jobs/cli/datasets.hpp"
+
+namespace semigeo::jobs::cli {
+namespace {
+
+struct CheckOptions {
+  std::string target;
+  bool json = false;
+};
+
+int check(const CheckOptions& options) {
+  auto files = nlohmann::json::array();
+  int broken = 0;
+  for (const auto& path : datasets_at(options.target)) {
+    nlohmann::json entry = {{"file", path.string()}, {"ok", true}};
+    try {
+      io::Dataset(path).verify();
+    } catch (const std::exception& e) {
+      ++broken;
+      entry["ok"] = false;
+      entry["error"] = e.what();
+      if (!options.json) std::printf("broken: %s\n", e.what());
+    }
+    files.push_back(std::move(entry));
+  }
+  if (options.json) {
+    std::printf("%s\n", nlohmann::json{{"files", files}, {"broken", broken}}.dump(2).c_str());
+  } else {
+    std::printf("%zu checked, %d broken\n", files.size(), broken);
+  }
+  return broken == 0 ? kAllDone : kSomeFailed;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<CheckOptions>();
+  CLI::App* command = app.add_subcommand(
+      "check",
+      "Examples:\n"
+      "  semigeo check archive                    every dataset of an archive\n"
+      "  semigeo check archive/scans/x.ply.vtkhdf\n"
+      "\n"
+      "Reads every array of every dataset and compares checksums, the content digest and the\n"
+      "rules of VTKHDF. Names what is broken; exit code 1 if anything is.\n");
+  command->add_option("target", options->target, "A dataset, or an archive")->required();
+  command->add_flag("--json", options->json, "As JSON");
+  command->callback([options, &exit_code] { exit_code = check(*options); });
+}
+
+}  // namespace semigeo::jobs::cli

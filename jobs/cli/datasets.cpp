@@ -1,0 +1,30 @@
+#include "jobs/cli/datasets.hpp"
+
+#include <algorithm>
+
+#include "io/error.hpp"
+
+namespace semigeo::jobs::cli {
+
+std::vector<std::filesystem::path> datasets_at(const std::filesystem::path& file_or_archive) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::file_status status = fs::status(file_or_archive, error);
+  if (!fs::exists(status))
+    throw io::Error(file_or_archive, "", "no such file or folder", "check the path");
+  if (!fs::is_directory(status)) return {file_or_archive};
+
+  const fs::path scans = file_or_archive / "scans";
+  std::vector<fs::path> datasets;
+  for (const auto& entry :
+       fs::directory_iterator(fs::is_directory(scans, error) ? scans : file_or_archive))
+    if (entry.path().extension() == ".vtkhdf" && !entry.path().filename().string().starts_with('.'))
+      datasets.push_back(entry.path());
+  std::sort(datasets.begin(), datasets.end());
+  if (datasets.empty())
+    throw io::Error(file_or_archive, "", "holds no dataset (scans/*.vtkhdf)",
+                    "make some: semigeo run SCANS --output " + file_or_archive.string());
+  return datasets;
+}
+
+}  // namespace semigeo::jobs::cli

@@ -1,0 +1,262 @@
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "io/atomic_file.hpp"
+#include "io/error.hpp"
+#include "jobs/cli/command.hpp"
+#include "jobs/local_executor.hpp"
+
+namespace semigeo::jobs::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RunOptions {
+  RunConfig config;
+  std::string surface = "curved";
+  std::string compression = "deflate";
+  bool json = false;
+  bool dry_run = false;
+};
+
+/// Counts and costs of a run, for its last line.
+struct RunSummary {
+  std::int64_t done = 0;
+  std::int64_t up_to_date = 0;
+  std::int64_t failed = 0;
+  std::int64_t vertex_levels = 0;
+  double wall_seconds = 0;
+  double cpu_seconds = 0;
+  double peak_bytes = 0;
+  double rate() const {
+    return wall_seconds > 0 ? static_cast<double>(vertex_levels) / wall_seconds : 0;
+  }
+};
+
+void measure_process(RunSummary& summary) {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  summary.cpu_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  summary.peak_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+nlohmann::json scan_json(const PlannedJob& planned) {
+  return {{"name", planned.job.name},
+          {"input", planned.job.input.string()},
+          {"output", planned.job.output.string()}};
+}
+
+void print_plan(const std::vector<PlannedJob>& plan, bool json) {
+  if (json) {
+    auto scans = nlohmann::json::array();
+    for (const PlannedJob& p : plan) {
+      auto scan = scan_json(p);
+      scan["state"] = p.up_to_date ? "up to date" : p.error.empty() ? "would run" : "unreadable";
+      if (!p.reason.empty()) scan["reason"] = p.reason;
+      if (!p.error.empty()) scan["error"] = p.error;
+      scans.push_back(std::move(scan));
+    }
+    std::printf("%s\n", nlohmann::json{{"scans", scans}}.dump(2).c_str());
+    return;
+  }
+  std::int64_t to_run = 0;
+  for (const PlannedJob& p : plan) {
+    if (p.up_to_date) continue;
+    ++to_run;
+    std::printf("%s: %s\n", p.job.name.c_str(),
+                p.error.empty() ? ("would run: " + p.reason).c_str() : p.error.c_str());
+  }
+  std::printf("%lld scans: %lld would run, %lld up to date\n",
+              static_cast<long long>(plan.size()), static_cast<long long>(to_run),
+              static_cast<long long>(plan.size()) - static_cast<long long>(to_run));
+}
+
+const char* state_name(JobState state) {
+  switch (state) {
+    case JobState::kDone: return "done";
+    case JobState::kUpToDate: return "up to date";
+    case JobState::kFailed: break;
+  }
+  return "failed";
+}
+
+void print_json(const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,
+                const RunSummary& summary) {
+  auto scans = nlohmann::json::array();
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    auto scan = scan_json(plan[i]);
+    const JobOutcome& outcome = outcomes[i];
+    scan["state"] = state_name(outcome.state);
+    scan["seconds"] = outcome.seconds;
+    if (!outcome.error.empty()) scan["error"] = outcome.error;
+    if (outcome.result) {
+      scan["format"] = outcome.result->format;
+      scan["vertices"] = outcome.result->vertices;
+      scan["triangles"] = outcome.result->triangles;
+      scan["parts"] = outcome.result->parts;
+      scan["levels"] = outcome.result->levels;
+      scan["repairs"] = nlohmann::json::parse(to_json(outcome.result->repairs));
+    }
+    scans.push_back(std::move(scan));
+  }
+  const nlohmann::json document = {{"scans", scans},
+                                   {"done", summary.done},
+                                   {"up_to_date", summary.up_to_date},
+                                   {"failed", summary.failed},
+                                   {"vertex_levels", summary.vertex_levels},
+                                   {"vertex_levels_per_second", summary.rate()},
+                                   {"wall_seconds", summary.wall_seconds},
+                                   {"cpu_seconds", summary.cpu_seconds},
+                                   {"peak_memory_bytes", summary.peak_bytes}};
+  std::printf("%s\n", document.dump(2).c_str());
+}
+
+/// One line a scan whose file had to be repaired; then the failures; then the totals.
+void print_text(const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,
+                const RunSummary& summary) {
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    if (!outcomes[i].result || outcomes[i].result->repairs == kernels::SurfaceRepairs{}) continue;
+    std::string changes;
+    const auto repairs = nlohmann::json::parse(to_json(outcomes[i].result->repairs));
+    for (const auto& [name, count] : repairs.items()) {
+      if (count.get<std::int64_t>() == 0) continue;
+      std::string words = name;
+      std::replace(words.begin(), words.end(), '_', ' ');
+      changes += (changes.empty() ? "" : ", ") + count.dump() + " " + words;
+    }
+    std::printf("repaired: %s: %s\n", plan[i].job.name.c_str(), changes.c_str());
+  }
+  for (const JobOutcome& outcome : outcomes)
+    if (outcome.state == JobState::kFailed) std::printf("failed: %s\n", outcome.error.c_str());
+  std::printf(
+      "%lld done, %lld up to date, %lld failed; %s vertex levels/s; %s wall, %s CPU, %.0f MB peak\n",
+      static_cast<long long>(summary.done), static_cast<long long>(summary.up_to_date),
+      static_cast<long long>(summary.failed), short_number(summary.rate()).c_str(),
+      short_duration(summary.wall_seconds).c_str(), short_duration(summary.cpu_seconds).c_str(),
+      summary.peak_bytes / 1e6);
+}
+
+int run(const RunOptions& options, const std::string& effective_config) {
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<PlannedJob> plan;
+  try {
+    plan = plan_jobs(options.config);
+  } catch (const io::Error& e) {
+    std::fprintf(stderr, "semigeo: %s\n", e.what());
+    return kUsage;
+  }
+  if (plan.empty()) {
+    std::fprintf(stderr, "semigeo: no .ply, .obj, .off or .stl file (or .gz of one) was found\n");
+    return kUsage;
+  }
+  if (options.dry_run) {
+    print_plan(plan, options.json);
+    return kAllDone;
+  }
+
+  std::int64_t to_run = 0;
+  std::uintmax_t bytes = 0;
+  for (const PlannedJob& p : plan) {
+    if (p.up_to_date) continue;
+    std::error_code error;
+    const auto size = fs::file_size(p.job.input, error);
+    ++to_run;
+    bytes += error ? 0 : size;
+  }
+  engine::Workers workers(options.config.threads);
+  RunSummary summary;
+  std::vector<JobOutcome> outcomes;
+  {
+    Progress progress(to_run, bytes);
+    outcomes = run_jobs(plan, options.config.surface, workers, progress);
+    summary.vertex_levels = progress.vertex_levels();
+  }
+  const fs::path config_file = options.config.archive / "semigeo.toml";
+  if (!fs::exists(config_file)) io::write_file_atomically(config_file, effective_config);
+
+  for (const JobOutcome& outcome : outcomes) {
+    summary.done += outcome.state == JobState::kDone;
+    summary.up_to_date += outcome.state == JobState::kUpToDate;
+    summary.failed += outcome.state == JobState::kFailed;
+  }
+  summary.wall_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  measure_process(summary);
+  if (options.json) {
+    print_json(plan, outcomes, summary);
+  } else {
+    print_text(plan, outcomes, summary);
+  }
+  return summary.failed == 0 ? kAllDone : kSomeFailed;
+}
+
+/// The options that datasets depend on, as --config reads them.
+std::string config_text(const RunOptions& options) {
+  char text[512];
+  const SurfaceParameters& p = options.config.surface;
+  std::snprintf(text, sizeof text,
+                "# Effective configuration; use it again with --config.\n"
+                "[run]\nlevels = %d\nsurface = \"%s\"\nstep = %.17g\ncompression = \"%s\"\n"
+                "unit = \"%s\"\n",
+                p.levels, options.surface.c_str(), p.step, options.compression.c_str(),
+                p.length_unit.c_str());
+  return text;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = app.add_subcommand(
+      "run",
+      "Examples:\n"
+      "  semigeo run scans/ --output archive             every scan below scans/, 8 smoothings\n"
+      "  semigeo run a.ply b.stl.gz --output archive --levels 20 --unit mm\n"
+      "  semigeo run scans/ --output archive --dry-run   what would run, and why\n"
+      "\n"
+      "Makes one multi-scale dataset per scan: archive/scans/<name>.vtkhdf. What is up to date, by\n"
+      "content, is left alone; a run that was interrupted goes on where it stopped.\n"
+      "Exit codes: 0 all done, 1 some scans failed, 2 usage.\n");
+  RunConfig& config = options->config;
+  SurfaceParameters& surface = config.surface;
+  command->add_option("scans", config.inputs,
+                      "Scans (.ply .obj .off .stl, each also .gz) and folders of them")
+      ->required()
+      ->configurable(false);
+  command->add_option("-o,--output", config.archive, "The archive: a folder, made if need be")
+      ->required()
+      ->configurable(false);
+  command->add_option("--levels", surface.levels, "Smoothing iterations; every level is stored")
+      ->check(CLI::Range(0, 999));
+  command->add_option("--surface", options->surface,
+                      "What patches sample: quadratic faces, or flat ones as in the thesis")
+      ->check(CLI::IsMember({"curved", "flat"}));
+  command->add_option("--step", surface.step, "Sample distance of patches, in mean edge lengths")
+      ->check(CLI::Range(0.05, 20.0));
+  command->add_option("--compression", options->compression, "Of the stored arrays")
+      ->check(CLI::IsMember({"deflate", "none"}));
+  command->add_option("--unit", surface.length_unit, "Length unit of the scans, as a label");
+  command->add_option("--threads", config.threads, "Threads at once; 0: one per core")
+      ->check(CLI::Range(0, 4096));
+  command->add_flag("--json", options->json, "Results as JSON on stdout")->configurable(false);
+  command->add_flag("--dry-run", options->dry_run, "Say what would run, and why; write nothing")
+      ->configurable(false);
+  command->fallthrough();
+  command->callback([options, &exit_code] {
+    options->config.surface.curved = options->surface == "curved";
+    options->config.surface.compression =
+        options->compression == "deflate" ? io::Compression::deflate : io::Compression::none;
+    exit_code = run(*options, config_text(*options));
+  });
+}
+
+}  // namespace semigeo::jobs::cli

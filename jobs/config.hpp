@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/chunk_codec.hpp"
+
+namespace semigeo::jobs {
+
+/// Everything besides the scan itself that a dataset's content depends on.
+struct SurfaceParameters {
+  int levels = 8;            ///< smoothing iterations; the dataset has levels + 1 levels
+  bool curved = true;        ///< sample quadratic faces rather than flat ones
+  double step = 1;           ///< sample distance of the patches, in mean edge lengths
+  io::Compression compression = io::Compression::deflate;
+  std::string length_unit = "unknown";
+};
+
+/// The parameters as JSON with sorted keys: the same parameters, the same text.
+std::string to_json(const SurfaceParameters& parameters);
+
+/// What `semigeo run` was asked to do.
+struct RunConfig {
+  std::vector<std::filesystem::path> inputs;
+  std::filesystem::path archive;
+  SurfaceParameters surface;
+  int threads = 0;  ///< 0: all cores
+};
+
+}  // namespace semigeo::jobs

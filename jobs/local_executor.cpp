@@ -1,0 +1,70 @@
+#include "jobs/local_executor.hpp"
+
+#include <chrono>
+#include <new>
+#include <set>
+
+#include "io/atomic_file.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::uintmax_t size_of(const fs::path& file) {
+  std::error_code error;
+  const auto size = fs::file_size(file, error);
+  return error ? 0 : size;
+}
+
+JobOutcome run_job(const SurfaceJob& job, const SurfaceParameters& parameters,
+                   const engine::RunContext& context) {
+  JobOutcome outcome;
+  try {
+    outcome.result = run_surface_job(job, parameters, context);
+    outcome.state = JobState::kDone;
+  } catch (const std::bad_alloc&) {
+    outcome.error = job.input.string() + ": not enough memory; free some or decimate the scan";
+  } catch (const std::exception& e) {
+    outcome.error = e.what();
+  }
+  return outcome;
+}
+
+}  // namespace
+
+std::vector<JobOutcome> run_jobs(const std::vector<PlannedJob>& plan,
+                                 const SurfaceParameters& parameters, engine::Workers& workers,
+                                 Progress& progress) {
+  const engine::RunContext context{workers, progress, {}};
+  std::set<fs::path> folders;
+  for (const PlannedJob& planned : plan) folders.insert(planned.job.output.parent_path());
+  for (const fs::path& folder : folders) {
+    fs::create_directories(folder);
+    io::remove_stale_partials(folder);
+  }
+
+  std::vector<JobOutcome> outcomes;
+  for (const PlannedJob& planned : plan) {
+    if (planned.up_to_date) {
+      outcomes.push_back({.state = JobState::kUpToDate, .error = {}, .result = {}, .seconds = 0});
+      continue;
+    }
+    const auto start = std::chrono::steady_clock::now();
+    progress.scan_started(planned.job.name);
+    JobOutcome outcome;
+    if (planned.error.empty()) {
+      outcome = run_job(planned.job, parameters, context);
+    } else {
+      outcome.error = planned.error;
+    }
+    outcome.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    progress.scan_ended(outcome.state == JobState::kDone, size_of(planned.job.input));
+    if (outcome.state == JobState::kFailed) progress.say("failed: " + outcome.error);
+    outcomes.push_back(std::move(outcome));
+  }
+  return outcomes;
+}
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/parallel.hpp"
+#include "jobs/plan.hpp"
+#include "jobs/progress.hpp"
+#include "jobs/stages/surface_job.hpp"
+
+namespace semigeo::jobs {
+
+enum class JobState { kDone, kUpToDate, kFailed };
+
+struct JobOutcome {
+  JobState state = JobState::kFailed;
+  std::string error;                       ///< of a failed job: one sentence
+  std::optional<SurfaceJobResult> result;  ///< of a job that ran and succeeded
+  double seconds = 0;
+};
+
+/// Runs the jobs that are not up to date, one after the other, each on all workers. A job that fails
+/// never harms another. outcomes[i] belongs to plan[i].
+std::vector<JobOutcome> run_jobs(const std::vector<PlannedJob>& plan,
+                                 const SurfaceParameters& parameters, engine::Workers& workers,
+                                 Progress& progress);
+
+}  // namespace semigeo::jobs

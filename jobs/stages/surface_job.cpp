@@ -1,0 +1,216 @@
+#include "jobs/stages/surface_job.hpp"
+
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "engine/task_graph.hpp"
+#include "io/dataset_writer.hpp"
+#include "io/error.hpp"
+#include "io/file_digest.hpp"
+#include "io/scan_reader.hpp"
+#include "jobs/stages/evolving_surface.hpp"
+#include "kernels/vertex_order.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+/// Mean edge lengths beyond which single precision cannot hold curvatures (length^-2).
+constexpr double kShortestMeanEdge = 1e-12;
+constexpr double kLongestMeanEdge = 1e12;
+
+nlohmann::json repairs_json(const kernels::SurfaceRepairs& repairs) {
+  return {{"degenerate_faces", repairs.degenerate_faces},
+          {"duplicate_faces", repairs.duplicate_faces},
+          {"flipped_faces", repairs.flipped_faces},
+          {"isolated_vertices", repairs.isolated_vertices},
+          {"nonmanifold_faces", repairs.nonmanifold_faces},
+          {"split_vertices", repairs.split_vertices},
+          {"welded_vertices", repairs.welded_vertices}};
+}
+
+void check_usable(const kernels::Surface& surface, const SurfaceJob& job,
+                  const kernels::SurfaceRepairs& repairs) {
+  if (surface.face_count() == 0)
+    throw io::Error(job.input, "",
+                    "no usable triangle is left after repair (" + to_json(repairs) + ")",
+                    "check how the scan was exported");
+  const double edge = kernels::mean_edge_length(surface);
+  if (!(edge >= kShortestMeanEdge && edge <= kLongestMeanEdge))
+    throw io::Error(job.input, "",
+                    "the mean edge length, " + nlohmann::json(edge).dump() +
+                        ", is outside 1e-12 ... 1e12",
+                    "export the scan in a unit that suits its size");
+}
+
+/// Encodes arrays chunk by chunk on all workers.
+class ParallelEncoder {
+ public:
+  ParallelEncoder(engine::Workers& workers, io::Compression compression)
+      : workers_(workers), compression_(compression) {}
+
+  /// `target` is filled by `run` and must live until then, as must what `view` points to.
+  void add(const io::ArrayView& view, io::EncodedArray& target) {
+    target.shape = io::shape_of(view, compression_);
+    target.chunks.resize(target.shape.chunk_count());
+    for (std::int64_t c = 0; c < target.shape.chunk_count(); ++c) tasks_.push_back({view, &target, c});
+  }
+
+  void run() {
+    workers_.for_blocks(static_cast<std::int64_t>(tasks_.size()), 1, [&](engine::IndexRange range) {
+      for (auto i = range.begin; i < range.end; ++i)
+        tasks_[i].target->chunks[tasks_[i].chunk] =
+            io::encode_chunk(tasks_[i].view, tasks_[i].chunk, compression_);
+    });
+    tasks_.clear();
+  }
+
+ private:
+  struct Task {
+    io::ArrayView view;
+    io::EncodedArray* target;
+    std::int64_t chunk;
+  };
+  engine::Workers& workers_;
+  io::Compression compression_;
+  std::vector<Task> tasks_;
+};
+
+io::EncodedConnectivity encode_connectivity(const kernels::Surface& surface,
+                                            ParallelEncoder& encoder) {
+  std::vector<std::int32_t> source(surface.points.size());
+  std::iota(source.begin(), source.end(), 0);
+  io::EncodedConnectivity encoded;
+  encoder.add(io::array_of(std::span(surface.triangles)), encoded.triangles);
+  encoder.add(io::array_of(std::span<const std::int32_t>(source), io::ElementType::int64),
+              encoded.source_vertex);
+  encoder.add(io::array_of(std::span<const std::int32_t>(surface.part)), encoded.part);
+  encoder.run();
+  return encoded;
+}
+
+io::EncodedFields encode_fields(const LevelFields& fields, io::RowOrder order,
+                                ParallelEncoder& encoder) {
+  io::EncodedFields encoded;
+  encoder.add(io::array_of(std::span(fields.points), order), encoded.points);
+  encoder.add(io::array_of(std::span(fields.normals), order), encoded.normals);
+  encoder.add(io::array_of(std::span(fields.gaussian_curvature), order),
+              encoded.gaussian_curvature);
+  encoder.add(io::array_of(std::span(fields.mean_curvature), order), encoded.mean_curvature);
+  encoder.add(io::array_of(std::span(fields.patch_completeness), order),
+              encoded.patch_completeness);
+  encoder.run();
+  return encoded;
+}
+
+/// result[old] = new for order[new] = old.
+std::vector<std::int32_t> inverse(const std::vector<std::int32_t>& order) {
+  std::vector<std::int32_t> result(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) result[order[i]] = static_cast<std::int32_t>(i);
+  return result;
+}
+
+/// Evolves and writes all levels: pass k + 1 runs beside encoding and writing of level k.
+///
+///   pass 0 ──► pass 1 ──► pass 2 ──► ...
+///     └► encode 0 ─► write 0 ─► (pass 2)      at most two levels of fields are in memory
+///          └► encode 1 ─► write 1 ─► ...
+void write_levels(EvolvingSurface& surface, const std::vector<std::int32_t>& stored_order,
+                  const SurfaceParameters& parameters, std::int64_t parts,
+                  io::DatasetWriter& writer, const engine::RunContext& context) {
+  struct Level {
+    std::unique_ptr<LevelFields> fields;
+    io::EncodedFields encoded;
+    io::LevelAttributes attributes;
+  };
+  std::vector<Level> levels(parameters.levels + 1);
+  const auto cost = static_cast<double>(surface.vertex_count());
+  engine::TaskGraph graph;
+  std::vector<engine::TaskGraph::Task> pass, write;
+  for (int k = 0; k <= parameters.levels; ++k) {
+    Level& level = levels[k];
+    const std::string name = std::to_string(k);
+    std::vector<engine::TaskGraph::Task> after;
+    if (k >= 1) after.push_back(pass[k - 1]);
+    if (k >= 2) after.push_back(write[k - 2]);
+    pass.push_back(graph.add(
+        "pass " + name, after,
+        [&surface, &level, last = k == parameters.levels] {
+          level.fields = std::make_unique<LevelFields>(surface.advance(!last));
+        },
+        cost));
+    const auto encode = graph.add(
+        "encode " + name, {pass[k]},
+        [&context, &parameters, &stored_order, &level, k, parts] {
+          ParallelEncoder encoder(context.workers, parameters.compression);
+          level.encoded = encode_fields(*level.fields, stored_order, encoder);
+          level.attributes = {.iteration = k,
+                              .step = level.fields->step,
+                              .scale = level.fields->scale,
+                              .mean_edge_length = level.fields->mean_edge_length,
+                              .parts = parts};
+          level.fields.reset();
+        },
+        cost / 10);
+    after = {encode};
+    if (k >= 1) after.push_back(write[k - 1]);
+    write.push_back(graph.add(
+        "write " + name, after,
+        [&writer, &level] { writer.write_level(level.attributes, std::move(level.encoded)); }, cost / 20));
+  }
+  rethrow_first(graph.run(context));
+}
+
+}  // namespace
+
+std::string to_json(const kernels::SurfaceRepairs& repairs) { return repairs_json(repairs).dump(); }
+
+SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters& parameters,
+                                 const engine::RunContext& context) {
+  SurfaceJobResult result;
+  io::DatasetHeader header;
+  header.parameters_json = to_json(parameters);
+  header.length_unit = parameters.length_unit;
+  header.input_name = job.name;
+  header.input_xxh3 = job.input_xxh3;
+  header.job_key = job.key;
+
+  std::unique_ptr<io::DatasetWriter> writer;
+  std::vector<std::int32_t> stored_order;
+  kernels::Surface surface;
+  {
+    io::Scan scan = io::read_scan(job.input);
+    if (io::xxh3_of_file(job.input) != job.input_xxh3)
+      throw io::Error(job.input, "", "the file changed while it was read", "run again");
+    result.format = scan.format;
+    kernels::BuiltSurface built = kernels::build_surface(std::move(scan.mesh));
+    check_usable(built.surface, job, built.repairs);
+    result.repairs = built.repairs;
+    result.vertices = built.surface.vertex_count();
+    result.triangles = built.surface.face_count();
+    result.parts = built.surface.part_count;
+    result.levels = parameters.levels + 1;
+    nlohmann::json repairs = repairs_json(built.repairs);
+    repairs["polygons_triangulated"] = scan.polygons_triangulated;
+    repairs["faces_skipped"] = scan.faces_skipped;
+    header.repairs_json = repairs.dump();
+    header.origin = {built.origin.x(), built.origin.y(), built.origin.z()};
+
+    writer = std::make_unique<io::DatasetWriter>(job.output, header, parameters.compression);
+    ParallelEncoder encoder(context.workers, parameters.compression);
+    writer->write_connectivity(encode_connectivity(built.surface, encoder));
+    const auto order = kernels::locality_order(built.surface);
+    surface = kernels::reordered(built.surface, order);
+    stored_order = inverse(order);
+  }
+  EvolvingSurface evolving(std::move(surface),
+                           {.curved = parameters.curved, .step_factor = parameters.step}, context);
+  write_levels(evolving, stored_order, parameters, result.parts, *writer, context);
+  writer->finish();
+  return result;
+}
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "engine/run_context.hpp"
+#include "jobs/config.hpp"
+#include "jobs/plan.hpp"
+#include "kernels/surface_builder.hpp"
+
+namespace semigeo::jobs {
+
+/// What a surface job made.
+struct SurfaceJobResult {
+  std::string format;  ///< of the scan
+  std::int64_t vertices = 0;
+  std::int64_t triangles = 0;
+  std::int32_t parts = 0;
+  std::int64_t levels = 0;
+  kernels::SurfaceRepairs repairs;
+};
+
+/// Repairs as JSON with sorted keys.
+std::string to_json(const kernels::SurfaceRepairs& repairs);
+
+/// Reads and repairs one scan, evolves it through all levels and writes its dataset, which appears
+/// under its final name only when it is whole and verified. Throws io::Error on an unreadable or
+/// unusable scan, on a scan that changed meanwhile, and when the dataset cannot be written.
+SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters& parameters,
+                                 const engine::RunContext& context);
+
+}  // namespace semigeo::jobs
