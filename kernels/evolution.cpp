@@ -1,5 +1,6 @@
 #include "kernels/evolution.hpp"
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "kernels/curvature.hpp"
@@ -25,7 +26,7 @@ EvolvedVertex evolve_vertex(const SampledSurface& surface, std::int32_t v, float
   }
   const Eigen::Vector3f position = mesh.point(v) + d.r;
   if (position.allFinite()) result.position = position;
-  if (!valid) return result;
+  if (!valid || !(d.ru.cross(d.rv).norm() >= kMinTangentArea)) return result;
 
   const Curvature c =
       surface.curved.empty() ? curvature_semigeodesic(d) : curvature_from_forms(d);

@@ -10,6 +10,10 @@ namespace semigeo::kernels {
 /// Below this share of the Gaussian's weight a vertex is invalid: it has no curvature.
 inline constexpr float kMinCompleteness = 0.25f;
 
+/// Area of the convolved tangents r_u x r_v, 1 on a plane, below which a patch has folded up on itself:
+/// a sphere as small as the step has 0.37. Such a vertex is invalid too.
+inline constexpr float kMinTangentArea = 0.1f;
+
 /// What one patch tells of its vertex: the curvature of this level, and the next level's place.
 struct EvolvedVertex {
   Eigen::Vector3f position;   ///< smoothed, same frame and units as the points
@@ -21,7 +25,8 @@ struct EvolvedVertex {
 
 /// Traces the patch of vertex v once and draws everything from it: K and H, whose scale is
 /// sqrt(variance of this level + step^2); the position on the next level; and the normal there.
-/// An invalid vertex keeps place and normal. All results are finite.
+/// An invalid vertex still moves as far as its samples say, but keeps its normal. All results are
+/// finite.
 /// Source: thesis 5.3 - 5.6. Differs: on curved faces K and H come from the full fundamental forms.
 EvolvedVertex evolve_vertex(const SampledSurface& surface, std::int32_t v, float step);
 

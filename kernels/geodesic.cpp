@@ -100,7 +100,9 @@ Ray ray_from_vertex(const GeodesicMesh& mesh, std::int32_t v, const Eigen::Vecto
   const Eigen::Vector3f p = mesh.point(v);
   const Eigen::Vector3f right = direction.cross(mesh.normals[v]).normalized();
   Ray best;
+  Ray nearest_edge;
   float best_cosine = 0;
+  float nearest_cosine = -std::numeric_limits<float>::infinity();
   const std::int32_t start = mesh.outgoing[v];
   std::int32_t h = start;
   Eigen::Vector3f b = mesh.point(mesh.origin(next(h))) - p;
@@ -120,10 +122,16 @@ Ray ray_from_vertex(const GeodesicMesh& mesh, std::int32_t v, const Eigen::Vecto
         best = {{h, 0, 0}, (1 - lambda) / length, lambda / length};
       }
     }
+    const float length_b = b.norm();
+    if (direction.dot(b) > nearest_cosine * length_b) {
+      nearest_cosine = direction.dot(b) / length_b;
+      nearest_edge = {{h, 0, 0}, 1 / length_b, 0};
+    }
     b = c;
     side_b = side_c;
     h = mesh.twin(prev(h));
   } while (h != kNone && h != start);
+  if (best.at.halfedge == kNone && h == start) return nearest_edge;
   return best;
 }
 

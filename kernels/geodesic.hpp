@@ -78,7 +78,9 @@ Eigen::Vector3f angle_weighted_normal(const Surface& surface,
 Eigen::Vector3f direction_in_space(const GeodesicMesh& mesh, const Ray& ray);
 
 /// The ray that leaves vertex v along the intersection of the mesh with the normal plane spanned by
-/// `direction` (any length > 0) and the vertex normal. kNone if that leads off the surface.
+/// `direction` (any length > 0) and the vertex normal. kNone if that leads off the surface. Where the
+/// plane misses a closed fan, because the surface is folded or a spike, the edge nearest to the
+/// direction is taken: a line that ended there would leave half a patch, and the fold for ever.
 /// Source: thesis 5.2.2, Theorem 7.
 Ray ray_from_vertex(const GeodesicMesh& mesh, std::int32_t v, const Eigen::Vector3f& direction);
 

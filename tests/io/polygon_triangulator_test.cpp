@@ -95,6 +95,17 @@ TEST(PolygonTriangulator, CutsHolesJoinedByABridge) {
   }
 }
 
+TEST(PolygonTriangulator, CutsPolygonsThatTouchThemselves) {
+  // Two triangles that meet in a corner, which is met twice.
+  Polygon corners = {{0, 0, 0}, {1, -1, 0}, {1, 1, 0}, {0, 0, 0}, {-1, 1, 0}, {-1, -1, 0}};
+  for (std::size_t start = 0; start < corners.size(); ++start) {
+    const Areas found = areas(corners, Eigen::Vector3d::UnitZ());
+    EXPECT_NEAR(found.sum, 2, 1e-12);
+    EXPECT_GE(found.least, 0);
+    std::rotate(corners.begin(), corners.begin() + 1, corners.end());
+  }
+}
+
 TEST(PolygonTriangulator, CutsLargePolygons) {
   const Areas found = areas(star(1000), Eigen::Vector3d::UnitZ());
   EXPECT_NEAR(found.sum, area_of_star(1000), 1e-9);
