@@ -65,14 +65,21 @@ void PolygonTriangulator::find_reflex() {
   }
 }
 
+bool PolygonTriangulator::is_spike(std::int32_t corner) const {
+  const Eigen::Vector2d& a = flat_[previous_[corner]];
+  const Eigen::Vector2d& c = flat_[next_[corner]];
+  return flat_[corner] == a || flat_[corner] == c || a == c;
+}
+
 bool PolygonTriangulator::is_ear(std::int32_t corner) {
   const std::int32_t a = previous_[corner];
   const std::int32_t c = next_[corner];
+  if (is_spike(corner)) return true;
   if (!(area(a, corner, c) > 0)) return false;
   for (const std::int32_t p : reflex_) {
     --steps_left_;
     if (!is_reflex_[p] || p == a || p == c) continue;
-    // A corner met twice (the bridge to a hole) lies on the ear's own corner and does not bar it.
+    // A corner met twice (a bridge to a hole) lies on the ear's own corner and does not bar it.
     if (flat_[p] == flat_[a] || flat_[p] == flat_[corner] || flat_[p] == flat_[c]) continue;
     if (area(a, corner, p) >= 0 && area(corner, c, p) >= 0 && area(c, a, p) >= 0) return false;
   }
@@ -117,7 +124,9 @@ void PolygonTriangulator::clip_ears(std::span<const Eigen::Vector3d> corners,
     --left;
     for (const std::int32_t p : {before, after})
       if (is_reflex_[p] && area(previous_[p], p, next_[p]) > 0) is_reflex_[p] = 0;
-    corner = next_[after];  // not `after`: skipping one avoids fans of slivers
+    // Not simply `after`: skipping one avoids fans of slivers. A spike that has come about where
+    // the polygon touches itself goes first, or ears might be seen beyond it.
+    corner = is_spike(before) ? before : is_spike(after) ? after : next_[after];
   }
   for (std::int32_t p = next_[corner]; next_[p] != corner; p = next_[p])
     triangles_.push_back({corner, p, next_[p]});

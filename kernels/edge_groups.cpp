@@ -47,4 +47,15 @@ EdgeGroups group_edges(std::span<const std::array<std::int32_t, 3>> triangles,
   return groups;
 }
 
+std::vector<std::int32_t> pair_twins(const EdgeGroups& groups, std::size_t face_count) {
+  std::vector<std::int32_t> twin(4 * face_count, kNone);
+  for (std::int64_t e = 0; e < groups.edge_count(); ++e) {
+    const auto members = groups.edge(e);
+    if (members.size() != 2) continue;
+    twin[members[0]] = members[1];
+    twin[members[1]] = members[0];
+  }
+  return twin;
+}
+
 }  // namespace semigeo::kernels

@@ -22,4 +22,7 @@ struct EdgeGroups {
 EdgeGroups group_edges(std::span<const std::array<std::int32_t, 3>> triangles,
                        std::int64_t vertex_count);
 
+/// For each half-edge (4 F) the one other half-edge of an edge that has exactly two, else -1.
+std::vector<std::int32_t> pair_twins(const EdgeGroups& groups, std::size_t face_count);
+
 }  // namespace semigeo::kernels

@@ -103,7 +103,9 @@ inline Ray reversed(const Ray& ray) { return {ray.at, -ray.dx, -ray.dy}; }
 /// Source: thesis 5.2.1 - 5.2.3, Theorems 6 and 7.
 class GeodesicLine {
  public:
+  /// The mesh must outlive the line.
   GeodesicLine(const GeodesicMesh& mesh, const Ray& start);
+  GeodesicLine(GeodesicMesh&&, const Ray&) = delete;
 
   /// Moves on by `length`; false if the line ends before.
   bool advance(float length);

@@ -1,19 +1,6 @@
 #include "kernels/surface.hpp"
 
-#include "kernels/edge_groups.hpp"
-
 namespace semigeo::kernels {
-
-void pair_twins(Surface& surface) {
-  surface.twin.assign(4 * surface.triangles.size(), kNone);
-  const EdgeGroups groups = group_edges(surface.triangles, surface.vertex_count());
-  for (std::int64_t e = 0; e < groups.edge_count(); ++e) {
-    const auto members = groups.edge(e);
-    if (members.size() != 2) continue;
-    surface.twin[members[0]] = members[1];
-    surface.twin[members[1]] = members[0];
-  }
-}
 
 namespace {
 
@@ -59,7 +46,6 @@ void number_parts(Surface& surface) {
 }  // namespace
 
 void connect(Surface& surface) {
-  pair_twins(surface);
   choose_outgoing(surface);
   number_parts(surface);
 }

@@ -41,12 +41,9 @@ struct Surface {
   bool on_boundary(std::int32_t vertex) const { return twin[outgoing[vertex]] == kNone; }
 };
 
-/// Fills `twin` alone: pairs the half-edges of every edge that has exactly two.
-void pair_twins(Surface& surface);
-
-/// Fills `twin`, `outgoing`, `part` and `part_count` of a surface whose points and triangles are set.
-/// The triangles must already be manifold and oriented alike. Cost: linear, but for a sort within
-/// each vertex' edges.
+/// Fills `outgoing`, `part` and `part_count` of a surface whose points, triangles and twins are set.
+/// The triangles must be manifold and oriented alike, with one fan of faces at each vertex.
+/// Linear cost.
 void connect(Surface& surface);
 
 /// Mean length of all edges, each counted once, in the units of the points; 0 without faces.

@@ -100,22 +100,24 @@ std::int64_t drop_duplicates(std::vector<Triangle>& triangles, std::int64_t vert
   return static_cast<std::int64_t>(dropped);
 }
 
-/// For each half-edge the one other half-edge of an edge that has exactly two, else kNone.
-std::vector<std::int32_t> partners(const EdgeGroups& groups, std::size_t face_count) {
-  std::vector<std::int32_t> partner(4 * face_count, kNone);
+/// No edge has more than two faces, the two of each run along it in opposite directions, and none
+/// lie back to back: nothing to repair.
+bool is_clean(const EdgeGroups& groups, const std::vector<Triangle>& triangles) {
+  const auto corner = [&](std::int32_t h) { return triangles[face_of(h)][corner_of(h)]; };
   for (std::int64_t e = 0; e < groups.edge_count(); ++e) {
     const auto members = groups.edge(e);
-    if (members.size() != 2) continue;
-    partner[members[0]] = members[1];
-    partner[members[1]] = members[0];
+    if (members.size() == 1) continue;
+    if (members.size() > 2 || corner(members[0]) == corner(members[1]) ||
+        corner(prev(members[0])) == corner(prev(members[1])))
+      return false;
   }
-  return partner;
+  return true;
 }
 
 /// Turns faces over until neighbours across two-faced edges agree; the larger camp of each connected
 /// set of faces keeps its orientation. A surface that cannot be oriented keeps some disagreement.
 std::int64_t orient(std::vector<Triangle>& triangles, std::int64_t vertex_count) {
-  const auto partner = partners(group_edges(triangles, vertex_count), triangles.size());
+  const auto partner = pair_twins(group_edges(triangles, vertex_count), triangles.size());
   const auto start_of = [&](std::int32_t h) { return triangles[face_of(h)][corner_of(h)]; };
   enum : std::uint8_t { kUnseen, kKeep, kFlip };
   std::vector<std::uint8_t> state(triangles.size(), kUnseen);
@@ -248,11 +250,16 @@ BuiltSurface build_surface(TriangleMesh&& mesh) {
     repairs.welded_vertices = before - surface.vertex_count();
   }
   repairs.degenerate_faces = drop_degenerate(surface.triangles);
-  repairs.duplicate_faces = drop_duplicates(surface.triangles, surface.vertex_count());
-  repairs.flipped_faces = orient(surface.triangles, surface.vertex_count());
-  repairs.nonmanifold_faces = drop_nonmanifold(surface.triangles, surface.vertex_count());
+  EdgeGroups groups = group_edges(surface.triangles, surface.vertex_count());
+  if (!is_clean(groups, surface.triangles)) {
+    repairs.duplicate_faces = drop_duplicates(surface.triangles, surface.vertex_count());
+    repairs.flipped_faces = orient(surface.triangles, surface.vertex_count());
+    repairs.nonmanifold_faces = drop_nonmanifold(surface.triangles, surface.vertex_count());
+    groups = group_edges(surface.triangles, surface.vertex_count());
+  }
   surface.triangles.shrink_to_fit();
-  pair_twins(surface);
+  surface.twin = pair_twins(groups, surface.triangles.size());
+  // Both rename vertices only; the twins stay as they are.
   repairs.split_vertices = split_fans(surface);
   repairs.isolated_vertices = drop_isolated(surface);
   connect(surface);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "kernels/edge_groups.hpp"
 #include "kernels/surface_builder.hpp"
 #include "tests/support/shapes.hpp"
 
@@ -39,6 +40,7 @@ TEST(VertexOrderTest, ConnectivityFollows) {
   Surface fresh;
   fresh.points = r.points;
   fresh.triangles = r.triangles;
+  fresh.twin = pair_twins(group_edges(fresh.triangles, fresh.vertex_count()), fresh.triangles.size());
   connect(fresh);
   EXPECT_EQ(r.twin, fresh.twin);
   EXPECT_EQ(r.part, fresh.part);
