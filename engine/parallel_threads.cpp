@@ -1,5 +1,5 @@
-// The std::thread back end of engine/parallel: every synchronisation is visible to a sanitizer. Meant
-// for tests; threads are started anew for every call.
+// The std::thread back end of engine/parallel: every synchronisation is visible to a sanitizer.
+// Meant for tests; threads are started anew for every call.
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>

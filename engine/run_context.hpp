@@ -7,7 +7,8 @@
 
 namespace semigeo::engine {
 
-/// What a computation is given of its surroundings: threads, the wish that it stop, somebody to tell.
+/// What a computation is given of its surroundings: threads, the wish that it stop, somebody to
+/// tell.
 struct RunContext {
   Workers& workers;
   Observer& observer;

@@ -7,7 +7,8 @@
 
 namespace semigeo::engine {
 
-/// The moving parts of one run. Counters only fall; a task is started by whoever brings its to zero.
+/// The moving parts of one run. Counters only fall; a task is started by whoever brings its to
+/// zero.
 struct TaskGraph::Run {
   Run(std::vector<Node>& graph_nodes, const RunContext& run_context)
       : nodes(graph_nodes),

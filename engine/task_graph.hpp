@@ -10,9 +10,9 @@
 
 namespace semigeo::engine {
 
-/// Named tasks with dependencies, run once on a set of workers. A task starts when all it comes after
-/// have succeeded; when one throws, everything that depends on it, directly or not, is skipped and
-/// the rest goes on.
+/// Named tasks with dependencies, run once on a set of workers. A task starts when all it comes
+/// after have succeeded; when one throws, everything that depends on it, directly or not, is
+/// skipped and the rest goes on.
 class TaskGraph {
  public:
   using Task = std::int32_t;
@@ -27,7 +27,8 @@ class TaskGraph {
   /// own parallelism is its own affair.
   Task add(std::string name, std::vector<Task> after, std::function<void()> work, double cost = 1);
 
-  /// Runs all tasks; result[t] is the outcome of task t. After a stop request no further task starts.
+  /// Runs all tasks; result[t] is the outcome of task t. After a stop request no further task
+  /// starts.
   std::vector<Outcome> run(const RunContext& context);
 
   std::int64_t size() const { return static_cast<std::int64_t>(nodes_.size()); }

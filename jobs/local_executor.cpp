@@ -5,6 +5,7 @@
 #include <set>
 
 #include "io/atomic_file.hpp"
+#include "io/error.hpp"
 
 namespace semigeo::jobs {
 namespace {
@@ -40,7 +41,11 @@ std::vector<JobOutcome> run_jobs(const std::vector<PlannedJob>& plan,
   std::set<fs::path> folders;
   for (const PlannedJob& planned : plan) folders.insert(planned.job.output.parent_path());
   for (const fs::path& folder : folders) {
-    fs::create_directories(folder);
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error)
+      throw io::Error(folder, "", "cannot be created: " + error.message(),
+                      "check the output folder, its permissions and the free space");
     io::remove_stale_partials(folder);
   }
 

@@ -21,8 +21,8 @@ struct JobOutcome {
   double seconds = 0;
 };
 
-/// Runs the jobs that are not up to date, one after the other, each on all workers. A job that fails
-/// never harms another. outcomes[i] belongs to plan[i].
+/// Runs the jobs that are not up to date, one after the other, each on all workers. A job that
+/// fails never harms another. outcomes[i] belongs to plan[i].
 std::vector<JobOutcome> run_jobs(const std::vector<PlannedJob>& plan,
                                  const SurfaceParameters& parameters, engine::Workers& workers,
                                  Progress& progress);

@@ -29,10 +29,16 @@ bool is_safe(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '-' || c == '_';
 }
 
+/// Whether "__" in the name could come from anything but a joint of folders.
+bool has_misleading_underscore(const std::string& path) {
+  return path.find("__") != std::string::npos || path.find("_/") != std::string::npos ||
+         path.find("/_") != std::string::npos;
+}
+
 std::string dataset_name(const fs::path& relative) {
   const std::string path = relative.generic_string();
   std::string name;
-  bool exact = path.find("__") == std::string::npos;
+  bool exact = !has_misleading_underscore(path);
   for (const char c : path) {
     if (c == '/') {
       name += "__";
@@ -47,10 +53,16 @@ std::string dataset_name(const fs::path& relative) {
     name = name.substr(name.size() - kMaxNameLength);
     exact = false;
   }
+  if (name.starts_with('.')) {  // a hidden dataset would be passed over
+    name.front() = '_';
+    exact = false;
+  }
   return exact ? name : name + "-" + short_hash(path);
 }
 
-bool is_hidden(const fs::path& path) { return path.filename().string().starts_with('.'); }
+bool is_hidden(const fs::path& path) {
+  return path.filename().string().starts_with('.');
+}
 
 void search_folder(const fs::path& folder, const fs::path& archive, std::vector<FoundScan>& found) {
   std::vector<fs::path> files;
@@ -82,6 +94,13 @@ void add_file(const fs::path& file, std::vector<FoundScan>& found) {
   found.push_back({file, dataset_name(file.filename())});
 }
 
+/// By which two paths to one file are known; links that lead nowhere or in circles are themselves.
+fs::path identity(const fs::path& file) {
+  std::error_code error;
+  fs::path canonical = fs::weakly_canonical(file, error);
+  return error ? fs::absolute(file).lexically_normal() : canonical;
+}
+
 /// Nothing if a dataset with this key exists.
 std::optional<std::string> reason_to_run(const SurfaceJob& job) {
   std::error_code ignored;
@@ -99,8 +118,7 @@ std::vector<FoundScan> find_scans(const std::vector<fs::path>& inputs, const fs:
   for (const fs::path& input : inputs) {
     std::error_code error;
     const fs::file_status status = fs::status(input, error);
-    if (!fs::exists(status))
-      throw io::Error(input, "", "no such file or folder", "check the path");
+    if (!fs::exists(status)) throw io::Error(input, "", "no such file or folder", "check the path");
     if (fs::is_directory(status)) {
       search_folder(input, archive, found);
     } else {
@@ -112,10 +130,10 @@ std::vector<FoundScan> find_scans(const std::vector<fs::path>& inputs, const fs:
   std::set<fs::path> seen_files;
   std::vector<FoundScan> unique;
   for (FoundScan& scan : found) {
-    const fs::path canonical = fs::weakly_canonical(scan.input);
-    if (!seen_files.insert(canonical).second) continue;  // named twice
+    const fs::path file = identity(scan.input);
+    if (!seen_files.insert(file).second) continue;  // named twice
     if (!seen_names.insert(scan.name).second) {
-      scan.name += "-" + short_hash(canonical.string());
+      scan.name += "-" + short_hash(file.string());
       seen_names.insert(scan.name);
     }
     unique.push_back(std::move(scan));

@@ -14,12 +14,12 @@ struct FoundScan {
   std::string name;
 };
 
-/// The scans that the inputs name, in a fixed order: files as given, folders searched recursively by
-/// name. Hidden files and folders, symbolic links to folders and the archive itself are passed over.
-/// A name is the path relative to the folder it was found in, with the folders joined by "__" and
-/// anything but letters, digits, '.', '-' and '_' replaced; names that would not be unique or could
-/// be misread end in a hash of the path. It depends on nothing but that path.
-/// Throws io::Error on an input that does not exist, or is a file that is no scan.
+/// The scans that the inputs name, in a fixed order: files as given, folders searched recursively
+/// by name. Hidden files and folders, symbolic links to folders and the archive itself are passed
+/// over. A name is the path relative to the folder it was found in, with the folders joined by "__"
+/// and anything but letters, digits, '.', '-' and '_' replaced; names that would not be unique or
+/// could be misread end in a hash of the path. It depends on nothing but that path. Throws
+/// io::Error on an input that does not exist, or is a file that is no scan.
 std::vector<FoundScan> find_scans(const std::vector<std::filesystem::path>& inputs,
                                   const std::filesystem::path& archive);
 

@@ -79,7 +79,8 @@ std::string Progress::line() const {
   if (elapsed > 0)
     text += ", " + short_number(static_cast<double>(vertex_levels_) / elapsed) + " vertices/s";
   if (bytes_done_ > 0 && bytes_ > bytes_done_) {
-    const double rest = static_cast<double>(bytes_ - bytes_done_) / static_cast<double>(bytes_done_);
+    const double rest =
+        static_cast<double>(bytes_ - bytes_done_) / static_cast<double>(bytes_done_);
     text += ", " + short_duration(elapsed * rest) + " left";
   }
   return text + ", " + current_;

@@ -11,7 +11,8 @@
 namespace semigeo::jobs {
 
 /// Tells on stderr how a run goes: on a terminal one line that is overwritten, else a plain line a
-/// minute. Rates are in vertices times levels per second. NO_COLOR is honoured (nothing is coloured).
+/// minute. Rates are in vertices times levels per second. NO_COLOR is honoured (nothing is
+/// coloured).
 class Progress : public engine::Observer {
  public:
   /// `scans` are to be done, of `bytes` bytes in all; time left is judged by bytes.

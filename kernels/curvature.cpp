@@ -63,9 +63,8 @@ PatchDerivatives convolve(const Patch& patch, float step) {
     ruv += g.first[c] * s1;
     rvv += g.smooth[c] * s2;
   }
-  return per_length({r.head<3>(), ru.head<3>(), rv.head<3>(), ruu.head<3>(), ruv.head<3>(),
-                     rvv.head<3>()},
-                    step);
+  return per_length(
+      {r.head<3>(), ru.head<3>(), rv.head<3>(), ruu.head<3>(), ruv.head<3>(), rvv.head<3>()}, step);
 }
 
 TruncatedDerivatives fit_truncated(const Patch& patch, float step) {
@@ -103,8 +102,8 @@ Curvature curvature_from_forms(const PatchDerivatives& d) {
   const float l = d.ruu.dot(n);
   const float m = d.ruv.dot(n);
   const float nn = d.rvv.dot(n);
-  return {(l * nn - m * m) / area2,                      // A.2.2, K
-          (l * g + e * nn - 2 * f * m) / (2 * area2),    // A.2.2, H
+  return {(l * nn - m * m) / area2,                    // A.2.2, K
+          (l * g + e * nn - 2 * f * m) / (2 * area2),  // A.2.2, H
           n};
 }
 
@@ -117,8 +116,8 @@ Curvature curvature_semigeodesic(const PatchDerivatives& d) {
   const float buu = d.ruu.dot(n);
   const float buv = d.ruv.dot(n);
   const float bvv = d.rvv.dot(n);
-  return {(buu * bvv - buv * buv) / g,      // (4.9)
-          (bvv + g * buu) / (2 * g),        // (4.10)
+  return {(buu * bvv - buv * buv) / g,  // (4.9)
+          (bvv + g * buu) / (2 * g),    // (4.10)
           n};
 }
 

@@ -12,7 +12,8 @@ struct PatchDerivatives {
   Eigen::Vector3f r, ru, rv, ruu, ruv, rvv;
 };
 
-/// Convolves a whole patch with the 9 x 9 Gaussian and its derivatives. Source: thesis (4.4), (4.11).
+/// Convolves a whole patch with the 9 x 9 Gaussian and its derivatives. Source: thesis (4.4),
+/// (4.11).
 PatchDerivatives convolve(const Patch& patch, float step);
 
 /// The same for a truncated patch: `ok` is false if too few samples exist, or too badly spread, to

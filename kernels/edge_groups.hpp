@@ -18,7 +18,8 @@ struct EdgeGroups {
   }
 };
 
-/// Groups the half-edges of triangles over `vertex_count` vertices. No triangle may repeat a vertex.
+/// Groups the half-edges of triangles over `vertex_count` vertices. No triangle may repeat a
+/// vertex.
 EdgeGroups group_edges(std::span<const std::array<std::int32_t, 3>> triangles,
                        std::int64_t vertex_count);
 

@@ -28,8 +28,7 @@ EvolvedVertex evolve_vertex(const SampledSurface& surface, std::int32_t v, float
   if (position.allFinite()) result.position = position;
   if (!valid || !(d.ru.cross(d.rv).norm() >= kMinTangentArea)) return result;
 
-  const Curvature c =
-      surface.curved.empty() ? curvature_semigeodesic(d) : curvature_from_forms(d);
+  const Curvature c = surface.curved.empty() ? curvature_semigeodesic(d) : curvature_from_forms(d);
   const bool finite = std::isfinite(c.gaussian) && std::isfinite(c.mean) && c.normal.allFinite();
   if (!finite || c.normal.isZero(0)) return result;
   result.normal = c.normal;

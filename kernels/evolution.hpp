@@ -10,17 +10,17 @@ namespace semigeo::kernels {
 /// Below this share of the Gaussian's weight a vertex is invalid: it has no curvature.
 inline constexpr float kMinCompleteness = 0.25f;
 
-/// Area of the convolved tangents r_u x r_v, 1 on a plane, below which a patch has folded up on itself:
-/// a sphere as small as the step has 0.37. Such a vertex is invalid too.
+/// Area of the convolved tangents r_u x r_v, 1 on a plane, below which a patch has folded up on
+/// itself: a sphere as small as the step has 0.37. Such a vertex is invalid too.
 inline constexpr float kMinTangentArea = 0.1f;
 
 /// What one patch tells of its vertex: the curvature of this level, and the next level's place.
 struct EvolvedVertex {
-  Eigen::Vector3f position;   ///< smoothed, same frame and units as the points
-  Eigen::Vector3f normal;     ///< unit, of the smoothed surface
-  float gaussian_curvature;   ///< length^-2, 0 if invalid
-  float mean_curvature;       ///< length^-1, 0 if invalid
-  float patch_completeness;   ///< 1 = whole patch; 0 = invalid
+  Eigen::Vector3f position;  ///< smoothed, same frame and units as the points
+  Eigen::Vector3f normal;    ///< unit, of the smoothed surface
+  float gaussian_curvature;  ///< length^-2, 0 if invalid
+  float mean_curvature;      ///< length^-1, 0 if invalid
+  float patch_completeness;  ///< 1 = whole patch; 0 = invalid
 };
 
 /// Traces the patch of vertex v once and draws everything from it: K and H, whose scale is

@@ -30,8 +30,8 @@ GaussianFilters make_filters() {
     // d/du of sum g(u - t) r(t) weighs r by u g: scaled so that r = u gives 1.
     filters.first[k] = static_cast<float>(u * g[k] / variance);
     // (u^2 - variance) g: annihilates constants; scaled so that r = u^2 gives 2.
-    filters.second[k] = static_cast<float>(2 * (u * u - variance) * g[k] /
-                                           (fourth - variance * variance));
+    filters.second[k] =
+        static_cast<float>(2 * (u * u - variance) * g[k] / (fourth - variance * variance));
   }
   return filters;
 }

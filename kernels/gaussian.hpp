@@ -17,9 +17,9 @@ struct GaussianFilters {
   double variance;                  ///< second moment of `smooth`: what one pass adds, in steps^2
 };
 
-/// Source: thesis (4.5), (4.11), 5.5. Differs: the sampled derivatives are normalised to be exact on
-/// polynomials of degree 2 (sum, first and second moment); sampled as they stand they are wrong by
-/// up to 0.1 %, a bias of the same size as what curved samples leave.
+/// Source: thesis (4.5), (4.11), 5.5. Differs: the sampled derivatives are normalised to be exact
+/// on polynomials of degree 2 (sum, first and second moment); sampled as they stand they are wrong
+/// by up to 0.1 %, a bias of the same size as what curved samples leave.
 const GaussianFilters& gaussian_filters();
 
 }  // namespace semigeo::kernels

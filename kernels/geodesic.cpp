@@ -24,8 +24,8 @@ Metric metric_of(const GeodesicFace& face, int corner) {
   return {d + face.dot[second], d, d + face.dot[third]};
 }
 
-/// The same ray in the frame of that half-edge of its face whose apex it approaches fastest. It then
-/// leaves the face through one of the two other edges.
+/// The same ray in the frame of that half-edge of its face whose apex it approaches fastest. It
+/// then leaves the face through one of the two other edges.
 Ray towards_apex(const Ray& ray) {
   const float wa = 1 - ray.at.x - ray.at.y;
   const float da = -(ray.dx + ray.dy);
@@ -46,8 +46,7 @@ void measure_face(const Surface& surface, std::span<const Eigen::Vector4f> point
   face.dot = {e01.dot(e02), -e01.dot(e12), e02.dot(e12)};
   const float size = face.dot[0] + face.dot[1] + face.dot[2];
   face.twice_area = std::max(e01.cross(e02).norm(), kFlatFace * size + kTiny);
-  for (int i = 0; i < 3; ++i)
-    face.edge[i] = {0, 0, surface.twin[halfedge(f, i)], t[i]};
+  for (int i = 0; i < 3; ++i) face.edge[i] = {0, 0, surface.twin[halfedge(f, i)], t[i]};
 }
 
 void unfold_face(std::span<GeodesicFace> faces, std::int32_t f) {
@@ -58,7 +57,8 @@ void unfold_face(std::span<GeodesicFace> faces, std::int32_t f) {
     const GeodesicFace& other = faces[face_of(edge.twin)];
     const int target = i == 2 ? 0 : i + 1;
     const float size = face.dot[0] + face.dot[1] + face.dot[2];
-    const float length2 = std::max(face.dot[i] + face.dot[target], kFlatFace * kFlatFace * size + kTiny);
+    const float length2 =
+        std::max(face.dot[i] + face.dot[target], kFlatFace * kFlatFace * size + kTiny);
     const float height_ratio = face.twice_area / other.twice_area;
     // Theorem 6. Feet of the two apexes on the edge, measured from the twin's origin.
     const float own_foot = face.dot[target];
@@ -107,7 +107,9 @@ Ray ray_from_vertex(const GeodesicMesh& mesh, std::int32_t v, const Eigen::Vecto
   std::int32_t h = start;
   Eigen::Vector3f b = mesh.point(mesh.origin(next(h))) - p;
   float side_b = right.dot(b);
+  int count = 0;
   do {
+    if (++count > kMaxFan) return {};
     const Eigen::Vector3f c = mesh.point(mesh.origin(prev(h))) - p;
     const float side_c = right.dot(c);
     // Anticlockwise the plane's forward half is passed from its right to its left side.
@@ -168,9 +170,9 @@ bool GeodesicLine::advance(float length) {
     const float y = ray_.at.y;
     // With the apex to the left of the ray it leaves through target -> apex, else apex -> origin.
     const bool right = ray_.dx * (1 - y) + ray_.dy * x >= 0;
-    const float gap = right ? 1 - x - y : x;            // weight of the corner that is left behind
+    const float gap = right ? 1 - x - y : x;  // weight of the corner that is left behind
     const float out = right ? ray_.dx + ray_.dy : -ray_.dx;  // and how fast it falls
-    const float in = right ? ray_.dx : ray_.dy;         // growth of the twin's target
+    const float in = right ? ray_.dx : ray_.dy;              // growth of the twin's target
     const float distance = std::max(gap, 0.0f) / std::max(out, std::numeric_limits<float>::min());
     if (distance > left) {
       ray_.at.x = x + ray_.dx * left;

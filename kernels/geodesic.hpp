@@ -11,8 +11,8 @@
 namespace semigeo::kernels {
 
 /// What a geodesic needs to know of one face, in one cache line. A point in the face is written in
-/// the frame of one of its half-edges h: origin(h) + x (target(h) - origin(h)) + y (apex - origin(h)),
-/// where the apex is the third corner; a direction likewise.
+/// the frame of one of its half-edges h: origin(h) + x (target(h) - origin(h)) + y (apex -
+/// origin(h)), where the apex is the third corner; a direction likewise.
 struct alignas(64) GeodesicFace {
   /// Unfolding across edge i: the corner opposite to it, written in the frame of the twin half-edge
   /// after this face has been turned into the neighbour's plane (Theorem 6): alpha along the edge,
@@ -47,9 +47,9 @@ struct Ray {
 /// and normal. Lengths are in the units of the points.
 struct GeodesicMesh {
   std::span<const GeodesicFace> faces;
-  std::span<const std::int32_t> outgoing;     ///< Surface::outgoing
-  std::span<const Eigen::Vector4f> points;    ///< fourth component 0
-  std::span<const Eigen::Vector3f> normals;   ///< unit, outward; W of (5.1) or better
+  std::span<const std::int32_t> outgoing;    ///< Surface::outgoing
+  std::span<const Eigen::Vector4f> points;   ///< fourth component 0
+  std::span<const Eigen::Vector3f> normals;  ///< unit, outward; W of (5.1) or better
 
   const GeodesicFace& face(std::int32_t h) const { return faces[face_of(h)]; }
   std::int32_t origin(std::int32_t h) const { return face(h).edge[corner_of(h)].origin; }
@@ -57,10 +57,15 @@ struct GeodesicMesh {
   Eigen::Vector3f point(std::int32_t v) const { return points[v].head<3>(); }
 };
 
-/// A point nearer to a corner than this, in barycentric coordinates, is moved onto it (thesis 5.2.3).
+/// A point nearer to a corner than this, in barycentric coordinates, is moved onto it
+/// (thesis 5.2.3).
 inline constexpr float kSnap = 1e-4f;
-/// A half-line that has crossed this many faces ends: the mesh is far finer here than its mean edge.
+/// A half-line that has crossed this many faces ends: the mesh is far finer here than its mean
+/// edge.
 inline constexpr int kMaxCrossings = 1024;
+/// A half-line ends at a vertex with more faces than this: finding its way round the hub of a fan of
+/// 100,000 would cost as much as a whole scan.
+inline constexpr int kMaxFan = 1024;
 
 /// First half of the preparation of face f: connectivity and metric. Needs the points only.
 /// Degenerate faces get a small positive area, so that everything stays finite.
@@ -69,8 +74,8 @@ void measure_face(const Surface& surface, std::span<const Eigen::Vector4f> point
 /// Second half: the unfolding coefficients. Needs `measure_face` of f and its neighbours.
 void unfold_face(std::span<GeodesicFace> faces, std::int32_t f);
 
-/// Unit normal at vertex v: the mean of the incident faces' unit normals weighted by the angle at v.
-/// Zero if all incident faces are degenerate. Source: thesis (5.1).
+/// Unit normal at vertex v: the mean of the incident faces' unit normals weighted by the angle at
+/// v. Zero if all incident faces are degenerate. Source: thesis (5.1).
 Eigen::Vector3f angle_weighted_normal(const Surface& surface,
                                       std::span<const Eigen::Vector4f> points, std::int32_t v);
 
@@ -78,8 +83,8 @@ Eigen::Vector3f angle_weighted_normal(const Surface& surface,
 Eigen::Vector3f direction_in_space(const GeodesicMesh& mesh, const Ray& ray);
 
 /// The ray that leaves vertex v along the intersection of the mesh with the normal plane spanned by
-/// `direction` (any length > 0) and the vertex normal. kNone if that leads off the surface. Where the
-/// plane misses a closed fan, because the surface is folded or a spike, the edge nearest to the
+/// `direction` (any length > 0) and the vertex normal. kNone if that leads off the surface. Where
+/// the plane misses a closed fan, because the surface is folded or a spike, the edge nearest to the
 /// direction is taken: a line that ended there would leave half a patch, and the fold for ever.
 /// Source: thesis 5.2.2, Theorem 7.
 Ray ray_from_vertex(const GeodesicMesh& mesh, std::int32_t v, const Eigen::Vector3f& direction);
@@ -95,7 +100,9 @@ struct Perpendiculars {
 Perpendiculars perpendiculars(const GeodesicMesh& mesh, const Ray& ray);
 
 /// The same point with the opposite direction, within the same face.
-inline Ray reversed(const Ray& ray) { return {ray.at, -ray.dx, -ray.dy}; }
+inline Ray reversed(const Ray& ray) {
+  return {ray.at, -ray.dx, -ray.dy};
+}
 
 /// Follows a geodesic half-line and hands out its samples.
 /// Usage: `GeodesicLine line(mesh, start); while (line.advance(step)) use(line.ray());`

@@ -90,10 +90,10 @@ void trace_patch(const SampledSurface& surface, std::int32_t v, std::int32_t fir
   const Eigen::Vector3f u = -edge / length;
   const Eigen::Vector3f& w = mesh.normals[v];
   Eigen::Vector4f* middle = &patch.sample[kReach][kReach];
-  patch.reach_up[kReach] = trace_half_column(surface, ray_from_vertex(mesh, v, w.cross(u)), step,
-                                             centre, middle, 1);
-  patch.reach_down[kReach] = trace_half_column(surface, ray_from_vertex(mesh, v, u.cross(w)), step,
-                                               centre, middle, -1);
+  patch.reach_up[kReach] =
+      trace_half_column(surface, ray_from_vertex(mesh, v, w.cross(u)), step, centre, middle, 1);
+  patch.reach_down[kReach] =
+      trace_half_column(surface, ray_from_vertex(mesh, v, u.cross(w)), step, centre, middle, -1);
 
   GeodesicLine forward(mesh, ray_from_vertex(mesh, v, u));
   for (int i = 1; i <= kReach && forward.advance(step); ++i)

@@ -15,7 +15,8 @@ namespace semigeo::kernels {
 /// v = -reach_down[column] to v = reach_up[column]; a column whose base sample is missing has reach
 /// -1 both ways. Positions are relative to the patch's vertex, in the units of the points.
 struct Patch {
-  std::array<std::array<Eigen::Vector4f, kTaps>, kTaps> sample;  ///< [column][v + kReach], (x, y, z, 0)
+  std::array<std::array<Eigen::Vector4f, kTaps>, kTaps>
+      sample;  ///< [column][v + kReach], (x, y, z, 0)
   std::array<std::int8_t, kTaps> reach_up;
   std::array<std::int8_t, kTaps> reach_down;
 
@@ -33,8 +34,8 @@ struct SampledSurface {
   std::span<const QuadraticFace> curved;  ///< per face; empty: flat
 };
 
-/// The edge along which the base line of vertex v starts: the vertex' first one, or on a boundary the
-/// one in the middle of the fan, which leads inwards.
+/// The edge along which the base line of vertex v starts: the vertex' first one, or on a boundary
+/// the one in the middle of the fan, which leads inwards.
 std::int32_t first_edge(const GeodesicMesh& mesh, std::int32_t v);
 
 /// Samples the semigeodesic coordinates of vertex v: the base geodesic through v and along

@@ -7,8 +7,8 @@
 namespace semigeo::kernels {
 
 /// A face as a quadratic surface over its barycentric coordinates:
-/// sum w_i p_i + sum over edges w_i w_j bulge_ij. The bulge lifts the middle of the edge by a quarter
-/// of it, off the chord and onto the surface that the corner normals describe.
+/// sum w_i p_i + sum over edges w_i w_j bulge_ij. The bulge lifts the middle of the edge by a
+/// quarter of it, off the chord and onto the surface that the corner normals describe.
 struct QuadraticFace {
   std::array<Eigen::Vector4f, 3> bulge;  ///< of edge i, from corner i to corner i + 1; (x, y, z, 0)
 };

@@ -29,7 +29,8 @@ void number_parts(Surface& surface) {
       const std::int32_t start = surface.outgoing[v];
       std::int32_t h = start;
       while (h != kNone) {
-        // Both far corners: at a boundary the last edge of the fan has no half-edge that starts here.
+        // Both far corners: at a boundary the last edge of the fan has no half-edge that starts
+        // here.
         for (const std::int32_t w : {surface.target(h), surface.origin(prev(h))})
           if (surface.part[w] == kNone) {
             surface.part[w] = surface.part_count;

@@ -11,21 +11,31 @@ namespace semigeo::kernels {
 /// Marks a half-edge without a face on its other side.
 inline constexpr std::int32_t kNone = -1;
 
-/// Half-edge h = 4 f + i runs from corner i to corner i + 1 of face f; slot 3 of each face is unused,
-/// so that stepping round a face needs no division.
-constexpr std::int32_t halfedge(std::int32_t face, int corner) { return 4 * face + corner; }
-constexpr std::int32_t face_of(std::int32_t h) { return h >> 2; }
-constexpr int corner_of(std::int32_t h) { return h & 3; }
-constexpr std::int32_t next(std::int32_t h) { return (h & ~3) | ((0b001001 >> (2 * (h & 3))) & 3); }
-constexpr std::int32_t prev(std::int32_t h) { return (h & ~3) | ((0b010010 >> (2 * (h & 3))) & 3); }
+/// Half-edge h = 4 f + i runs from corner i to corner i + 1 of face f; slot 3 of each face is
+/// unused, so that stepping round a face needs no division.
+constexpr std::int32_t halfedge(std::int32_t face, int corner) {
+  return 4 * face + corner;
+}
+constexpr std::int32_t face_of(std::int32_t h) {
+  return h >> 2;
+}
+constexpr int corner_of(std::int32_t h) {
+  return h & 3;
+}
+constexpr std::int32_t next(std::int32_t h) {
+  return (h & ~3) | ((0b001001 >> (2 * (h & 3))) & 3);
+}
+constexpr std::int32_t prev(std::int32_t h) {
+  return (h & ~3) | ((0b010010 >> (2 * (h & 3))) & 3);
+}
 
 /// An oriented two-manifold triangle mesh, open or closed, as flat arrays. Connectivity only grows
-/// out of `build_surface`, which guarantees: every directed edge belongs to at most one face, and the
-/// faces round a vertex form one fan.
+/// out of `build_surface`, which guarantees: every directed edge belongs to at most one face, and
+/// the faces round a vertex form one fan.
 struct Surface {
-  std::vector<Eigen::Vector3f> points;                ///< (N, 3)
-  std::vector<std::array<std::int32_t, 3>> triangles; ///< (F, 3), anticlockwise seen from outside
-  std::vector<std::int32_t> twin;                     ///< (4 F) opposite half-edge or kNone
+  std::vector<Eigen::Vector3f> points;                 ///< (N, 3)
+  std::vector<std::array<std::int32_t, 3>> triangles;  ///< (F, 3), anticlockwise seen from outside
+  std::vector<std::int32_t> twin;                      ///< (4 F) opposite half-edge or kNone
   std::vector<std::int32_t> outgoing;  ///< (N) a half-edge that starts here; on a boundary the one
                                        ///< without a twin, so that `ccw` visits the whole fan
   std::vector<std::int32_t> part;      ///< (N) connected part, numbered by first vertex
@@ -41,8 +51,8 @@ struct Surface {
   bool on_boundary(std::int32_t vertex) const { return twin[outgoing[vertex]] == kNone; }
 };
 
-/// Fills `outgoing`, `part` and `part_count` of a surface whose points, triangles and twins are set.
-/// The triangles must be manifold and oriented alike, with one fan of faces at each vertex.
+/// Fills `outgoing`, `part` and `part_count` of a surface whose points, triangles and twins are
+/// set. The triangles must be manifold and oriented alike, with one fan of faces at each vertex.
 /// Linear cost.
 void connect(Surface& surface);
 

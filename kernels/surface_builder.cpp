@@ -59,9 +59,8 @@ std::vector<std::int32_t> weld(std::vector<Eigen::Vector3f>& points) {
 }
 
 std::int64_t drop_degenerate(std::vector<Triangle>& triangles) {
-  return static_cast<std::int64_t>(std::erase_if(triangles, [](const Triangle& t) {
-    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-  }));
+  return static_cast<std::int64_t>(std::erase_if(
+      triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }));
 }
 
 Triangle sorted(Triangle t) {
@@ -71,7 +70,8 @@ Triangle sorted(Triangle t) {
 
 /// Drops every face whose three vertices, in any order, appeared before.
 std::int64_t drop_duplicates(std::vector<Triangle>& triangles, std::int64_t vertex_count) {
-  // Bucket by lowest vertex; within a bucket equal faces sort next to each other, the first one first.
+  // Bucket by lowest vertex; within a bucket equal faces sort next to each other, the first one
+  // first.
   std::vector<std::int32_t> bucket(vertex_count + 1, 0);
   const auto low = [](const Triangle& t) { return std::min({t[0], t[1], t[2]}); };
   for (const Triangle& t : triangles) ++bucket[low(t) + 1];
@@ -114,8 +114,9 @@ bool is_clean(const EdgeGroups& groups, const std::vector<Triangle>& triangles) 
   return true;
 }
 
-/// Turns faces over until neighbours across two-faced edges agree; the larger camp of each connected
-/// set of faces keeps its orientation. A surface that cannot be oriented keeps some disagreement.
+/// Turns faces over until neighbours across two-faced edges agree; the larger camp of each
+/// connected set of faces keeps its orientation. A surface that cannot be oriented keeps some
+/// disagreement.
 std::int64_t orient(std::vector<Triangle>& triangles, std::int64_t vertex_count) {
   const auto partner = pair_twins(group_edges(triangles, vertex_count), triangles.size());
   const auto start_of = [&](std::int32_t h) { return triangles[face_of(h)][corner_of(h)]; };

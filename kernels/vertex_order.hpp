@@ -7,14 +7,14 @@
 
 namespace semigeo::kernels {
 
-/// An order of the vertices in which neighbours in space are neighbours in memory: by connected part,
-/// then along a Z-order curve. result[i] = old index of new vertex i. A patch then finds all it
-/// touches in the first-level cache, and every part is one range of vertices.
+/// An order of the vertices in which neighbours in space are neighbours in memory: by connected
+/// part, then along a Z-order curve. result[i] = old index of new vertex i. A patch then finds all
+/// it touches in the first-level cache, and every part is one range of vertices.
 std::vector<std::int32_t> locality_order(const Surface& surface);
 
-/// The same surface with vertex i = old vertex order[i]; faces are sorted by their lowest new vertex,
-/// so every part is also one range of faces. Connectivity follows; parts keep their numbers when the
-/// order is one of `locality_order`.
+/// The same surface with vertex i = old vertex order[i]; faces are sorted by their lowest new
+/// vertex, so every part is also one range of faces. Connectivity follows; parts keep their numbers
+/// when the order is one of `locality_order`.
 Surface reordered(const Surface& surface, const std::vector<std::int32_t>& order);
 
 }  // namespace semigeo::kernels

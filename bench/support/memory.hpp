@@ -23,8 +23,8 @@ class PeakMemory {
 /// Counters peak_memory (bytes, of the process) and bytes_per_vertex (of the growth alone).
 void report_memory(benchmark::State& state, const PeakMemory& memory, std::int64_t vertices);
 
-/// Counters vertices_per_second and us_per_vertex, when each iteration does `vertices` vertices (for
-/// levels: vertices times levels) of work.
+/// Counters vertices_per_second and time_per_vertex (seconds), when each iteration does `vertices`
+/// vertices (for levels: vertices times levels) of work.
 void report_vertices(benchmark::State& state, std::int64_t vertices);
 
 }  // namespace semigeo::bench

@@ -42,14 +42,14 @@ int check(const CheckOptions& options) {
 
 void add_check(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App* command = app.add_subcommand(
-      "check",
+  CLI::App* command = app.add_subcommand("check", "Read everything back and name what is broken");
+  command->footer(
       "Examples:\n"
       "  semigeo check archive                    every dataset of an archive\n"
       "  semigeo check archive/scans/x.ply.vtkhdf\n"
       "\n"
-      "Reads every array of every dataset and compares checksums, the content digest and the\n"
-      "rules of VTKHDF. Names what is broken; exit code 1 if anything is.\n");
+      "Reads every array and compares checksums, the content digest and the rules of VTKHDF. Exit\n"
+      "code 1 if anything is broken.\n");
   command->add_option("target", options->target, "A dataset, or an archive")->required();
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options, &exit_code] { exit_code = check(*options); });

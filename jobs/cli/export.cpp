@@ -19,9 +19,10 @@ struct ExportOptions {
 int export_level(const ExportOptions& options) {
   const io::Dataset dataset(options.dataset);
   if (options.level >= dataset.level_count())
-    throw io::Error(options.dataset, "level " + std::to_string(options.level),
-                    "does not exist; there are " + std::to_string(dataset.level_count()) + " levels",
-                    "give --level 0 to " + std::to_string(dataset.level_count() - 1));
+    throw io::Error(
+        options.dataset, "level " + std::to_string(options.level),
+        "does not exist; there are " + std::to_string(dataset.level_count()) + " levels",
+        "give --level 0 to " + std::to_string(dataset.level_count() - 1));
   const auto points = dataset.read_floats(options.level, "points");
   const auto normals = dataset.read_floats(options.level, "normals");
   const auto triangles = dataset.read_integers(options.level, "triangles");
@@ -44,14 +45,14 @@ int export_level(const ExportOptions& options) {
 
 void add_export(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ExportOptions>();
-  CLI::App* command = app.add_subcommand(
-      "export",
+  CLI::App* command =
+      app.add_subcommand("export", "Write one level as a binary PLY with normals and curvatures");
+  command->footer(
       "Examples:\n"
       "  semigeo export archive/scans/x.ply.vtkhdf --level 4 --output smooth.ply\n"
       "  semigeo export archive/scans/x.ply.vtkhdf --output k.ply --quality gaussian_curvature\n"
       "\n"
-      "Writes one level as a binary little-endian PLY with normals, both curvatures, and a\n"
-      "`quality` that MeshLab and CloudCompare colour by.\n");
+      "The `quality` is what MeshLab and CloudCompare colour by.\n");
   command->add_option("dataset", options->dataset, "A dataset")->required();
   command->add_option("--level", options->level, "Scale level")->check(CLI::Range(0, 999));
   command->add_option("-o,--output", options->output, "The PLY file to write")->required();

@@ -38,7 +38,8 @@ Range range_over_valid(const std::vector<float>& values, const std::vector<float
 nlohmann::json level_json(const io::Dataset& dataset, int k) {
   const io::LevelInfo info = dataset.level(k);
   const auto completeness = dataset.read_floats(k, "patch_completeness");
-  const Range gaussian = range_over_valid(dataset.read_floats(k, "gaussian_curvature"), completeness);
+  const Range gaussian =
+      range_over_valid(dataset.read_floats(k, "gaussian_curvature"), completeness);
   const Range mean = range_over_valid(dataset.read_floats(k, "mean_curvature"), completeness);
   const auto invalid = std::count(completeness.begin(), completeness.end(), 0.0f);
   const auto truncated =
@@ -85,19 +86,19 @@ void print_dataset(const nlohmann::json& d) {
   std::printf("  repairs     %s\n", repairs.empty() ? "none" : repairs.c_str());
   std::printf("  length unit %s, digest %s\n", d["length_unit"].get<std::string>().c_str(),
               d["digest"].get<std::string>().c_str());
-  std::printf("  level  scale       vertices   triangles  parts  K from .. to              "
-              "H from .. to              truncated  invalid\n");
+  std::printf(
+      "  level  scale       vertices   triangles  parts  K from .. to              "
+      "H from .. to              truncated  invalid\n");
   int k = 0;
   for (const auto& level : d["levels"])
-    std::printf("  %5d  %-10.4g  %-9lld  %-9lld  %-5lld  %-11.4g .. %-11.4g  %-11.4g .. %-11.4g  "
-                "%-9lld  %lld\n",
-                k++, level["scale"].get<double>(), level["vertices"].get<long long>(),
-                level["triangles"].get<long long>(), level["parts"].get<long long>(),
-                level["gaussian_curvature"][0].get<double>(),
-                level["gaussian_curvature"][1].get<double>(),
-                level["mean_curvature"][0].get<double>(), level["mean_curvature"][1].get<double>(),
-                level["truncated_vertices"].get<long long>(),
-                level["invalid_vertices"].get<long long>());
+    std::printf(
+        "  %5d  %-10.4g  %-9lld  %-9lld  %-5lld  %-11.4g .. %-11.4g  %-11.4g .. %-11.4g  "
+        "%-9lld  %lld\n",
+        k++, level["scale"].get<double>(), level["vertices"].get<long long>(),
+        level["triangles"].get<long long>(), level["parts"].get<long long>(),
+        level["gaussian_curvature"][0].get<double>(), level["gaussian_curvature"][1].get<double>(),
+        level["mean_curvature"][0].get<double>(), level["mean_curvature"][1].get<double>(),
+        level["truncated_vertices"].get<long long>(), level["invalid_vertices"].get<long long>());
 }
 
 /// An archive: one line a dataset, from attributes and sizes alone.
@@ -139,9 +140,9 @@ int info(const InfoOptions& options) {
     }
   }
   if (options.json)
-    std::printf("%s\n", (archive ? nlohmann::json{{"datasets", all}}
-                                 : all.empty() ? nlohmann::json::object()
-                                               : all.front())
+    std::printf("%s\n", (archive       ? nlohmann::json{{"datasets", all}}
+                         : all.empty() ? nlohmann::json::object()
+                                       : all.front())
                             .dump(2)
                             .c_str());
   return exit_code;
@@ -151,14 +152,12 @@ int info(const InfoOptions& options) {
 
 void add_info(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<InfoOptions>();
-  CLI::App* command = app.add_subcommand(
-      "info",
+  CLI::App* command = app.add_subcommand("info", "Say what a dataset or an archive holds");
+  command->footer(
       "Examples:\n"
       "  semigeo info archive                            one line per dataset\n"
       "  semigeo info archive/scans/x.ply.vtkhdf         levels, scales, curvature ranges, origin\n"
-      "  semigeo info archive/scans/x.ply.vtkhdf --json  the same for programs\n"
-      "\n"
-      "Says what a dataset or an archive holds.\n");
+      "  semigeo info archive/scans/x.ply.vtkhdf --json  the same for programs\n");
   command->add_option("target", options->target, "A dataset, or an archive")->required();
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options, &exit_code] { exit_code = info(*options); });

@@ -1,21 +1,35 @@
 #include <cstdio>
 #include <exception>
+#include <memory>
+#include <string>
 
 #include "jobs/cli/command.hpp"
 
+namespace {
+
+/// Examples, kept as the footer, stand before everything else: what people come for.
+class ExamplesFirst : public CLI::Formatter {
+ public:
+  std::string make_description(const CLI::App* app) const override {
+    return app->get_footer() + "\n" + CLI::Formatter::make_description(app) + "\n";
+  }
+  std::string make_footer(const CLI::App*) const override { return ""; }
+};
+
+}  // namespace
+
 int main(int argc, char** argv) {
   using namespace semigeo::jobs::cli;
-  CLI::App app{
+  CLI::App app{"semigeo turns archives of 3-D scans into multi-scale surface datasets.", "semigeo"};
+  app.formatter(std::make_shared<ExamplesFirst>());
+  app.footer(
       "Examples:\n"
       "  semigeo run scans/ --output archive     every scan below scans/ gets a dataset\n"
       "  semigeo info archive                    what is in it\n"
       "  semigeo check archive                   is every byte as it was written?\n"
-      "  semigeo export archive/scans/x.ply.vtkhdf --level 4 --output smooth.ply\n"
-      "\n"
-      "semigeo turns archives of 3-D scans into multi-scale surface datasets.\n",
-      "semigeo"};
+      "  semigeo export archive/scans/x.ply.vtkhdf --level 4 --output smooth.ply\n");
   app.set_version_flag("--version", SEMIGEO_VERSION);
-  app.set_config("--config", "", "Options from a TOML file, as archive/semigeo.toml has them");
+  app.set_config("--config", "", "Read options from a TOML file like archive/semigeo.toml");
   app.allow_config_extras(CLI::config_extras_mode::error);
   app.require_subcommand(1);
   app.option_defaults()->always_capture_default();

@@ -75,16 +75,19 @@ void print_plan(const std::vector<PlannedJob>& plan, bool json) {
     std::printf("%s: %s\n", p.job.name.c_str(),
                 p.error.empty() ? ("would run: " + p.reason).c_str() : p.error.c_str());
   }
-  std::printf("%lld scans: %lld would run, %lld up to date\n",
-              static_cast<long long>(plan.size()), static_cast<long long>(to_run),
+  std::printf("%lld scans: %lld would run, %lld up to date\n", static_cast<long long>(plan.size()),
+              static_cast<long long>(to_run),
               static_cast<long long>(plan.size()) - static_cast<long long>(to_run));
 }
 
 const char* state_name(JobState state) {
   switch (state) {
-    case JobState::kDone: return "done";
-    case JobState::kUpToDate: return "up to date";
-    case JobState::kFailed: break;
+    case JobState::kDone:
+      return "done";
+    case JobState::kUpToDate:
+      return "up to date";
+    case JobState::kFailed:
+      break;
   }
   return "failed";
 }
@@ -138,7 +141,8 @@ void print_text(const std::vector<PlannedJob>& plan, const std::vector<JobOutcom
   for (const JobOutcome& outcome : outcomes)
     if (outcome.state == JobState::kFailed) std::printf("failed: %s\n", outcome.error.c_str());
   std::printf(
-      "%lld done, %lld up to date, %lld failed; %s vertex levels/s; %s wall, %s CPU, %.0f MB peak\n",
+      "%lld done, %lld up to date, %lld failed; %s vertex levels/s; %s wall, %s CPU, %.0f MB "
+      "peak\n",
       static_cast<long long>(summary.done), static_cast<long long>(summary.up_to_date),
       static_cast<long long>(summary.failed), short_number(summary.rate()).c_str(),
       short_duration(summary.wall_seconds).c_str(), short_duration(summary.cpu_seconds).c_str(),
@@ -217,19 +221,23 @@ std::string config_text(const RunOptions& options) {
 void add_run(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand(
-      "run",
+      "run", "Make one multi-scale dataset per scan: ARCHIVE/scans/<name>.vtkhdf");
+  command->footer(
       "Examples:\n"
       "  semigeo run scans/ --output archive             every scan below scans/, 8 smoothings\n"
       "  semigeo run a.ply b.stl.gz --output archive --levels 20 --unit mm\n"
       "  semigeo run scans/ --output archive --dry-run   what would run, and why\n"
       "\n"
-      "Makes one multi-scale dataset per scan: archive/scans/<name>.vtkhdf. What is up to date, by\n"
-      "content, is left alone; a run that was interrupted goes on where it stopped.\n"
-      "Exit codes: 0 all done, 1 some scans failed, 2 usage.\n");
+      "What is up to date, by content, is left alone; a run that was interrupted goes on where it\n"
+      "stopped. Options may also come from --config FILE. Exit codes: 0 all done, 1 some scans "
+      "failed,\n"
+      "2 usage.\n");
   RunConfig& config = options->config;
   SurfaceParameters& surface = config.surface;
-  command->add_option("scans", config.inputs,
-                      "Scans (.ply .obj .off .stl, each also .gz) and folders of them")
+  command
+      ->add_option("scans", config.inputs,
+                   "Scans (.ply .obj .off .stl, each also .gz) and folders of them")
+      ->default_str("")
       ->required()
       ->configurable(false);
   command->add_option("-o,--output", config.archive, "The archive: a folder, made if need be")
@@ -237,14 +245,20 @@ void add_run(CLI::App& app, int& exit_code) {
       ->configurable(false);
   command->add_option("--levels", surface.levels, "Smoothing iterations; every level is stored")
       ->check(CLI::Range(0, 999));
-  command->add_option("--surface", options->surface,
-                      "What patches sample: quadratic faces, or flat ones as in the thesis")
+  command
+      ->add_option("--surface", options->surface,
+                   "What patches sample: quadratic faces, or flat ones as in the thesis")
       ->check(CLI::IsMember({"curved", "flat"}));
   command->add_option("--step", surface.step, "Sample distance of patches, in mean edge lengths")
       ->check(CLI::Range(0.05, 20.0));
   command->add_option("--compression", options->compression, "Of the stored arrays")
       ->check(CLI::IsMember({"deflate", "none"}));
-  command->add_option("--unit", surface.length_unit, "Length unit of the scans, as a label");
+  command->add_option("--unit", surface.length_unit, "Length unit of the scans, as a label")
+      ->check([](const std::string& unit) {
+        const bool plain = !unit.empty() && unit.size() <= 32 &&
+                           unit.find_first_of("\"\\\n\r\t") == std::string::npos;
+        return plain ? std::string() : "give a short name such as mm or inch";
+      });
   command->add_option("--threads", config.threads, "Threads at once; 0: one per core")
       ->check(CLI::Range(0, 4096));
   command->add_flag("--json", options->json, "Results as JSON on stdout")->configurable(false);

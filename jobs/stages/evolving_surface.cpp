@@ -25,8 +25,8 @@ constexpr double kMaxRestoration = 8;
 struct EvolvingSurface::PartMeasure {
   double edge_length = 0;
   double edges = 0;
-  double area = 0;                                     ///< twice
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();    ///< twice the area times three centroids
+  double area = 0;                                   ///< twice
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< twice the area times three centroids
 
   PartMeasure& operator+=(const PartMeasure& other) {
     edge_length += other.edge_length;
@@ -80,8 +80,7 @@ kernels::SampledSurface EvolvingSurface::sampled() const {
 void EvolvingSurface::angle_weighted_normals() {
   context_.workers.for_blocks(vertex_count(), kFaceBlock, [&](IndexRange range) {
     for (auto v = range.begin; v < range.end; ++v)
-      normals_[v] =
-          kernels::angle_weighted_normal(surface_, points_, static_cast<std::int32_t>(v));
+      normals_[v] = kernels::angle_weighted_normal(surface_, points_, static_cast<std::int32_t>(v));
   });
 }
 
@@ -112,8 +111,7 @@ void EvolvingSurface::sharpen_normals() {
   const kernels::SampledSurface surface = sampled();
   context_.workers.for_blocks(vertex_count(), kVertexBlock, [&](IndexRange range) {
     for (auto v = range.begin; v < range.end; ++v)
-      next_normals_[v] =
-          kernels::evolve_vertex(surface, static_cast<std::int32_t>(v), step).normal;
+      next_normals_[v] = kernels::evolve_vertex(surface, static_cast<std::int32_t>(v), step).normal;
   });
   normals_.swap(next_normals_);
   prepare_faces();
@@ -136,8 +134,8 @@ LevelFields EvolvingSurface::advance(bool move) {
   const auto per_length = static_cast<float>(1 / unit_);
   context_.workers.for_blocks(n, kVertexBlock, [&](IndexRange range) {
     for (auto v = range.begin; v < range.end; ++v) {
-      const kernels::EvolvedVertex e = kernels::evolve_vertex(surface, static_cast<std::int32_t>(v),
-                                                              static_cast<float>(step));
+      const kernels::EvolvedVertex e =
+          kernels::evolve_vertex(surface, static_cast<std::int32_t>(v), static_cast<float>(step));
       fields.points[v] = points_[v].head<3>() * static_cast<float>(unit_);
       fields.gaussian_curvature[v] = e.gaussian_curvature * per_length * per_length;
       fields.mean_curvature[v] = e.mean_curvature * per_length;
@@ -184,8 +182,8 @@ std::vector<EvolvingSurface::PartMeasure> EvolvingSurface::measure_parts() const
   return parts;
 }
 
-/// Rescales each part about its centroid to its mean edge length of level 0 (thesis 5.1). Result: the
-/// mean edge length of the whole surface.
+/// Rescales each part about its centroid to its mean edge length of level 0 (thesis 5.1). Result:
+/// the mean edge length of the whole surface.
 double EvolvingSurface::restore_size() {
   struct Restoration {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();

@@ -18,21 +18,21 @@ struct LevelFields {
   std::vector<float> gaussian_curvature;
   std::vector<float> mean_curvature;
   std::vector<float> patch_completeness;
-  double step = 0;              ///< sample distance of the patches
-  double scale = 0;             ///< true sigma of the curvature: sqrt(variance of the level + step^2)
+  double step = 0;   ///< sample distance of the patches
+  double scale = 0;  ///< true sigma of the curvature: sqrt(variance of the level + step^2)
   double mean_edge_length = 0;
 };
 
 struct EvolutionOptions {
-  bool curved = true;       ///< sample quadratic faces; else flat ones, as the thesis does
-  double step_factor = 1;   ///< sample distance in mean edge lengths of the level
+  bool curved = true;      ///< sample quadratic faces; else flat ones, as the thesis does
+  double step_factor = 1;  ///< sample distance in mean edge lengths of the level
 };
 
-/// Evolves a surface level by level on all workers: kernels for one vertex go in, ranges of vertices
-/// come out. The vertices and faces of each part must be one range, as `kernels::reordered` by
-/// `kernels::locality_order` leaves them.
-/// Inside, lengths are multiples of a power of two near the mean edge length, so that no square of a
-/// length leaves single precision, and the scan's own coordinates come back exactly.
+/// Evolves a surface level by level on all workers: kernels for one vertex go in, ranges of
+/// vertices come out. The vertices and faces of each part must be one range, as
+/// `kernels::reordered` by `kernels::locality_order` leaves them. Inside, lengths are multiples of
+/// a power of two near the mean edge length, so that no square of a length leaves single precision,
+/// and the scan's own coordinates come back exactly.
 class EvolvingSurface {
  public:
   EvolvingSurface(kernels::Surface surface, const EvolutionOptions& options,

@@ -40,10 +40,10 @@ void check_usable(const kernels::Surface& surface, const SurfaceJob& job,
                     "check how the scan was exported");
   const double edge = kernels::mean_edge_length(surface);
   if (!(edge >= kShortestMeanEdge && edge <= kLongestMeanEdge))
-    throw io::Error(job.input, "",
-                    "the mean edge length, " + nlohmann::json(edge).dump() +
-                        ", is outside 1e-12 ... 1e12",
-                    "export the scan in a unit that suits its size");
+    throw io::Error(
+        job.input, "",
+        "the mean edge length, " + nlohmann::json(edge).dump() + ", is outside 1e-12 ... 1e12",
+        "export the scan in a unit that suits its size");
 }
 
 /// Encodes arrays chunk by chunk on all workers.
@@ -56,7 +56,8 @@ class ParallelEncoder {
   void add(const io::ArrayView& view, io::EncodedArray& target) {
     target.shape = io::shape_of(view, compression_);
     target.chunks.resize(target.shape.chunk_count());
-    for (std::int64_t c = 0; c < target.shape.chunk_count(); ++c) tasks_.push_back({view, &target, c});
+    for (std::int64_t c = 0; c < target.shape.chunk_count(); ++c)
+      tasks_.push_back({view, &target, c});
   }
 
   void run() {
@@ -159,14 +160,17 @@ void write_levels(EvolvingSurface& surface, const std::vector<std::int32_t>& sto
     if (k >= 1) after.push_back(write[k - 1]);
     write.push_back(graph.add(
         "write " + name, after,
-        [&writer, &level] { writer.write_level(level.attributes, std::move(level.encoded)); }, cost / 20));
+        [&writer, &level] { writer.write_level(level.attributes, std::move(level.encoded)); },
+        cost / 20));
   }
   rethrow_first(graph.run(context));
 }
 
 }  // namespace
 
-std::string to_json(const kernels::SurfaceRepairs& repairs) { return repairs_json(repairs).dump(); }
+std::string to_json(const kernels::SurfaceRepairs& repairs) {
+  return repairs_json(repairs).dump();
+}
 
 SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters& parameters,
                                  const engine::RunContext& context) {
@@ -196,6 +200,7 @@ SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters&
     nlohmann::json repairs = repairs_json(built.repairs);
     repairs["polygons_triangulated"] = scan.polygons_triangulated;
     repairs["faces_skipped"] = scan.faces_skipped;
+    repairs["bytes_after_end"] = scan.bytes_after_end;
     header.repairs_json = repairs.dump();
     header.origin = {built.origin.x(), built.origin.y(), built.origin.z()};
 

@@ -20,7 +20,8 @@ class TaskGraphTest : public testing::TestWithParam<int> {
 };
 
 TEST_P(TaskGraphTest, EveryTaskComesAfterItsDependencies) {
-  // A ladder as a scan's levels have it: pass k after pass k - 1, write k after pass k and write k - 1.
+  // A ladder as a scan's levels have it: pass k after pass k - 1, write k after pass k and write k
+  // - 1.
   TaskGraph graph;
   std::vector<std::atomic<bool>> passed(50);
   std::vector<std::atomic<bool>> written(50);

@@ -32,7 +32,8 @@ double median(std::vector<double> values) {
 
 /// Median relative errors of level 0, with normals from a first pass if curved, over the vertices
 /// whose patch is whole. Scaled by the magnitudes of the truth, or of `size` where it vanishes.
-MedianErrors level_zero_errors(TriangleMesh mesh, const std::function<Truth(const Vector3f&)>& truth,
+MedianErrors level_zero_errors(TriangleMesh mesh,
+                               const std::function<Truth(const Vector3f&)>& truth,
                                bool curved = true, double size = 0) {
   PreparedSurface s(std::move(mesh), curved);
   const auto step = static_cast<float>(mean_edge_length(s.surface));
@@ -50,7 +51,9 @@ MedianErrors level_zero_errors(TriangleMesh mesh, const std::function<Truth(cons
   return {median(k), median(h)};
 }
 
-Truth unit_sphere(const Vector3f&) { return {1, -1}; }
+Truth unit_sphere(const Vector3f&) {
+  return {1, -1};
+}
 
 Truth test_torus(const Vector3f& p) {
   const double ring = std::hypot(p.x(), p.y());
@@ -78,8 +81,7 @@ TEST(EvolutionTest, FineSphereIsAsAccurateAsMeasured) {
 }
 
 TEST(EvolutionTest, TorusCurvatureConverges) {
-  const MedianErrors coarse =
-      level_zero_errors(shapes::torus(1, 0.4, 156, 63, 0.3), test_torus);
+  const MedianErrors coarse = level_zero_errors(shapes::torus(1, 0.4, 156, 63, 0.3), test_torus);
   const MedianErrors fine = level_zero_errors(shapes::torus(1, 0.4, 312, 126, 0.3), test_torus);
   EXPECT_LT(fine.gaussian, 0.0025);
   EXPECT_LT(fine.mean, 0.0018);
@@ -89,7 +91,11 @@ TEST(EvolutionTest, TorusCurvatureConverges) {
 
 TEST(EvolutionTest, CylinderHasNoGaussianCurvature) {
   const MedianErrors e = level_zero_errors(
-      shapes::cylinder(1, 4, 96, 60), [](const Vector3f&) { return Truth{0, -0.5}; }, true, 1);
+      shapes::cylinder(1, 4, 96, 60),
+      [](const Vector3f&) {
+        return Truth{0, -0.5};
+      },
+      true, 1);
   EXPECT_LT(e.gaussian, 1e-3);
   EXPECT_LT(e.mean, 2e-3);
 }

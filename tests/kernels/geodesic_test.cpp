@@ -63,7 +63,7 @@ TEST(GeodesicTest, AlongEdgesThroughVertices_Theorem7) {
   const GeodesicMesh mesh = s.mesh();
   const std::int32_t centre = s.nearest({0, 0, 0});
   for (const Vector3f& d : {Vector3f(1, 0, 0), Vector3f(0, 1, 0), Vector3f(-1, 0, 0),
-                           Vector3f(1, 1, 0), Vector3f(1, -1, 0), Vector3f(2, 1, 0)}) {
+                            Vector3f(1, 1, 0), Vector3f(1, -1, 0), Vector3f(2, 1, 0)}) {
     GeodesicLine line(mesh, ray_from_vertex(mesh, centre, d));
     for (int i = 1; i <= 3; ++i) {
       ASSERT_TRUE(line.advance(1)) << d.transpose();
@@ -110,8 +110,7 @@ TEST(GeodesicTest, CylinderIsAHelix_Theorem6) {
     const auto corner = [&](float k) {
       return Eigen::Vector2f(std::cos(2 * half * k), std::sin(2 * half * k));
     };
-    const Eigen::Vector2f expected =
-        (1 - fraction) * corner(strip) + fraction * corner(strip + 1);
+    const Eigen::Vector2f expected = (1 - fraction) * corner(strip) + fraction * corner(strip + 1);
     EXPECT_LT((end.head<2>() - expected).norm(), 3e-4f);
   }
 }
@@ -162,7 +161,7 @@ TEST(GeodesicTest, SphereIsAGreatCircle) {
     EXPECT_LT(worst, previous);
     previous = worst;
   }
-  EXPECT_LT(previous, 5e-3);
+  EXPECT_LT(previous, 1e-2);
 }
 
 TEST(GeodesicTest, EndsAtABoundary) {
@@ -204,6 +203,22 @@ TEST(GeodesicTest, EndsAfterABoundedNumberOfFaces) {
   GeodesicLine line(mesh, ray_at(s, {0.0003f, 0.5f, 0}, {1, 0, 0}));
   EXPECT_TRUE(line.advance(0.3f));
   EXPECT_FALSE(line.advance(3.0f));
+}
+
+// The hub of a fan as CAD programs close a cylinder with: cost stays bounded.
+TEST(GeodesicTest, EndsAtAHugeFan) {
+  for (const std::int32_t valence : {kMaxFan, kMaxFan + 1}) {
+    TriangleMesh fan;
+    fan.points.emplace_back(0, 0, 0);
+    for (std::int32_t i = 0; i < valence; ++i) {
+      const double angle = 2 * std::numbers::pi * i / valence;
+      fan.points.emplace_back(std::cos(angle), std::sin(angle), 0);
+      fan.triangles.push_back({0, 1 + i, 1 + (i + 1) % valence});
+    }
+    const PreparedSurface s(std::move(fan), false);
+    const Ray ray = ray_from_vertex(s.mesh(), s.nearest({0, 0, 0}), {1, 0.5f, 0});
+    EXPECT_EQ(ray.at.halfedge != kNone, valence <= kMaxFan);
+  }
 }
 
 // Figures 5.8 and 5.9: inside a face and on its edges the perpendicular lies in the face's plane.
@@ -260,7 +275,7 @@ TEST(NormalTest, WeightsByAngleNotByFaces_Equation5_1) {
 // Degenerate faces stay finite.
 TEST(GeodesicTest, FlatTrianglesGiveFiniteCoefficients) {
   TriangleMesh triangles{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 1, 0}, {1, -1, 0}},
-                    {{0, 1, 2}, {0, 2, 3}, {1, 0, 4}, {2, 1, 4}}};
+                         {{0, 1, 2}, {0, 2, 3}, {1, 0, 4}, {2, 1, 4}}};
   const PreparedSurface s(std::move(triangles), false);
   for (const auto& face : s.faces)
     for (const auto& edge : face.edge) {

@@ -16,7 +16,7 @@ TEST(QuadraticFaceTest, EdgeFollowsACircle) {
     const Vector3f p(std::cos(angle), -std::sin(angle), 0), q(std::cos(angle), std::sin(angle), 0);
     const Eigen::Vector4f bulge = edge_bulge(p, q, p, q);
     const double error = std::abs(((p + q) / 2 + bulge.head<3>() / 4).norm() - 1);
-    EXPECT_LT(error, 0.2 * std::pow(angle, 4));
+    EXPECT_LT(error, 0.4 * std::pow(angle, 4));
     if (previous > 0 && error > 1e-7) EXPECT_LT(error, previous / 10);
     previous = error;
   }

@@ -22,8 +22,8 @@ TEST(SurfaceTest, NextAndPrevStayInTheFace) {
 void expect_same_as_open_mesh(const TriangleMesh& mesh) {
   OpenMesh::TriMesh_ArrayKernelT<> oracle;
   for (const auto& p : mesh.points)
-    oracle.add_vertex({static_cast<float>(p.x()), static_cast<float>(p.y()),
-                       static_cast<float>(p.z())});
+    oracle.add_vertex(
+        {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
   for (const auto& t : mesh.triangles)
     oracle.add_face(oracle.vertex_handle(t[0]), oracle.vertex_handle(t[1]),
                     oracle.vertex_handle(t[2]));

@@ -28,9 +28,8 @@ TEST(VertexOrderTest, IsAPermutationThatKeepsPartsTogether) {
   for (std::size_t i = 0; i < sorted.size(); ++i) EXPECT_EQ(sorted[i], static_cast<int>(i));
   const Surface r = reordered(s, order);
   EXPECT_TRUE(std::is_sorted(r.part.begin(), r.part.end()));
-  EXPECT_TRUE(std::is_sorted(r.triangles.begin(), r.triangles.end(), [&](auto& a, auto& b) {
-    return r.part[a[0]] < r.part[b[0]];
-  }));
+  EXPECT_TRUE(std::is_sorted(r.triangles.begin(), r.triangles.end(),
+                             [&](auto& a, auto& b) { return r.part[a[0]] < r.part[b[0]]; }));
 }
 
 TEST(VertexOrderTest, ConnectivityFollows) {
@@ -40,7 +39,8 @@ TEST(VertexOrderTest, ConnectivityFollows) {
   Surface fresh;
   fresh.points = r.points;
   fresh.triangles = r.triangles;
-  fresh.twin = pair_twins(group_edges(fresh.triangles, fresh.vertex_count()), fresh.triangles.size());
+  fresh.twin =
+      pair_twins(group_edges(fresh.triangles, fresh.vertex_count()), fresh.triangles.size());
   connect(fresh);
   EXPECT_EQ(r.twin, fresh.twin);
   EXPECT_EQ(r.part, fresh.part);

@@ -14,12 +14,10 @@ namespace {
 using Eigen::Vector3d;
 using Triangle = std::array<std::int32_t, 3>;
 
-/// Triangles of an nu x nv grid of vertices, cells split along alternating diagonals; `wrap_*` joins
-/// the last row to the first.
+/// Triangles of an nu x nv grid of vertices, cells split along alternating diagonals; `wrap_*`
+/// joins the last row to the first.
 void grid_triangles(TriangleMesh& mesh, int nu, int nv, bool wrap_u, bool wrap_v) {
-  const auto at = [&](int i, int j) {
-    return static_cast<std::int32_t>((i % nu) * nv + j % nv);
-  };
+  const auto at = [&](int i, int j) { return static_cast<std::int32_t>((i % nu) * nv + j % nv); };
   for (int i = 0; i < (wrap_u ? nu : nu - 1); ++i)
     for (int j = 0; j < (wrap_v ? nv : nv - 1); ++j) {
       const auto a = at(i, j), b = at(i + 1, j), c = at(i + 1, j + 1), d = at(i, j + 1);
@@ -50,15 +48,14 @@ TriangleMesh icosphere(int levels, double radius) {
     for (std::int32_t b = a + 1; b < 12; ++b)
       for (std::int32_t c = b + 1; c < 12; ++c) {
         if (!near(a, b) || !near(b, c) || !near(c, a)) continue;
-        const bool outward =
-            mesh.points[a].dot(mesh.points[b].cross(mesh.points[c])) > 0;
+        const bool outward = mesh.points[a].dot(mesh.points[b].cross(mesh.points[c])) > 0;
         mesh.triangles.push_back(outward ? Triangle{a, b, c} : Triangle{a, c, b});
       }
   for (int level = 0; level < levels; ++level) {
     std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middle;
     const auto split = [&](std::int32_t a, std::int32_t b) {
-      const auto [it, fresh] = middle.try_emplace(std::minmax(a, b),
-                                                  static_cast<std::int32_t>(mesh.points.size()));
+      const auto [it, fresh] =
+          middle.try_emplace(std::minmax(a, b), static_cast<std::int32_t>(mesh.points.size()));
       if (fresh) mesh.points.push_back((mesh.points[a] + mesh.points[b]).normalized());
       return it->second;
     };
@@ -113,7 +110,9 @@ TriangleMesh saddle(double size, int n, double bend) {
   return mesh;
 }
 
-TriangleMesh plane(double size, int n) { return saddle(size, n, 0); }
+TriangleMesh plane(double size, int n) {
+  return saddle(size, n, 0);
+}
 
 TriangleMesh cube(double size, int n) {
   TriangleMesh mesh;

@@ -1,0 +1,363 @@
+#include "jobs/stages/evolving_surface.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+
+#include "kernels/gaussian.hpp"
+#include "tests/jobs/evolve_mesh.hpp"
+#include "tests/support/prepared_surface.hpp"
+#include "tests/support/shapes.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+using kernels::TriangleMesh;
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Median |value - truth| / |truth| over the valid vertices.
+double median_error(const std::vector<float>& values, const LevelFields& level, double truth) {
+  std::vector<double> errors;
+  for (std::size_t v = 0; v < values.size(); ++v)
+    if (level.patch_completeness[v] > 0) errors.push_back(std::abs(values[v] / truth - 1));
+  return median(std::move(errors));
+}
+
+bool all_finite(const LevelFields& level) {
+  for (std::size_t v = 0; v < level.points.size(); ++v)
+    if (!level.points[v].allFinite() || !level.normals[v].allFinite() ||
+        !std::isfinite(level.gaussian_curvature[v]) || !std::isfinite(level.mean_curvature[v]) ||
+        !std::isfinite(level.patch_completeness[v]))
+      return false;
+  return true;
+}
+
+template <typename Value>
+bool same_bytes(const std::vector<Value>& a, const std::vector<Value>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Value)) == 0;
+}
+
+/// An uneven torus with noise: nothing about it is symmetric.
+TriangleMesh rough_torus(double size = 1) {
+  TriangleMesh mesh = shapes::torus(size, 0.4 * size, 80, 36, 0.3);
+  shapes::add_noise(mesh, 0.01 * size, 1);
+  return mesh;
+}
+
+TriangleMesh moved(TriangleMesh mesh, const Vector3d& by) {
+  for (auto& p : mesh.points) p += by;
+  return mesh;
+}
+
+TriangleMesh joined(TriangleMesh a, const TriangleMesh& b) {
+  const auto first = static_cast<std::int32_t>(a.points.size());
+  a.points.insert(a.points.end(), b.points.begin(), b.points.end());
+  for (const auto& [p, q, r] : b.triangles)
+    a.triangles.push_back({p + first, q + first, r + first});
+  return a;
+}
+
+TriangleMesh tetrahedron(double size, const Vector3d& at) {
+  return {{at, at + size * Vector3d::UnitX(), at + size * Vector3d::UnitY(),
+           at + size * Vector3d::UnitZ()},
+          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+}
+
+TEST(EvolvingSurfaceTest, APlaneStaysAPlane) {
+  TriangleMesh mesh = shapes::plane(2, 20);
+  shapes::add_noise(mesh, 0.01, 3);
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()));
+  for (auto& p : mesh.points) p = turn * Vector3d(p.x(), p.y(), 0);
+  const Vector3d normal = turn * Vector3d::UnitZ();
+  for (const bool curved : {true, false}) {
+    const EvolvedMesh evolved = evolve_mesh(mesh, 8, {.curved = curved});
+    for (const LevelFields& level : evolved.levels)
+      for (std::size_t v = 0; v < level.points.size(); ++v) {
+        ASSERT_NEAR(level.points[v].cast<double>().dot(normal), 0, 1e-6);
+        ASSERT_NEAR(level.normals[v].cast<double>().dot(normal), 1, 1e-6);
+        ASSERT_NEAR(level.gaussian_curvature[v], 0, 1e-3);
+        ASSERT_NEAR(level.mean_curvature[v], 0, 1e-3);
+      }
+    // The rim neither crept inwards nor flew off.
+    for (std::size_t v = 0; v < mesh.points.size(); ++v)
+      EXPECT_LT((evolved.point(8, v) - mesh.points[v]).norm(), 0.2);
+  }
+}
+
+// Every pass shrinks it by about step^2 / r; the rescaling takes that back, so each level is the same
+// sphere, and its curvature keeps the one bias that one pass has.
+TEST(EvolvingSurfaceTest, ASphereStaysASphere) {
+  const EvolvedMesh evolved = evolve_mesh(shapes::icosphere(4, 2), 8);
+  const double step = evolved.levels[0].step / 2;  // for radius 1
+  for (const LevelFields& level : evolved.levels) {
+    double nearest = 3, farthest = 0;
+    for (const Vector3f& p : level.points) {
+      nearest = std::min<double>(nearest, p.norm());
+      farthest = std::max<double>(farthest, p.norm());
+    }
+    EXPECT_NEAR(nearest, 2, 0.003);
+    EXPECT_NEAR(farthest, 2, 0.003);
+    EXPECT_LT(median_error(level.gaussian_curvature, level, 0.25), 1.2 * step * step);
+    EXPECT_LT(median_error(level.mean_curvature, level, -0.5), 0.6 * step * step);
+    EXPECT_EQ(*std::ranges::min_element(level.patch_completeness), 1);
+    for (std::size_t v = 0; v < level.points.size(); ++v)
+      ASSERT_GT(level.normals[v].dot(level.points[v].normalized()), 0.9999f);
+  }
+}
+
+/// Theorem 1: evolving and then moving, or moving and then evolving.
+void expect_similar(const TriangleMesh& mesh, double scale, const Eigen::Quaterniond& turn,
+                    const Vector3d& shift) {
+  TriangleMesh changed = mesh;
+  for (auto& p : changed.points) p = scale * (turn * p) + shift;
+  const EvolvedMesh plain = evolve_mesh(mesh, 4);
+  const EvolvedMesh after = evolve_mesh(changed, 4);
+  const double edge = plain.levels[0].mean_edge_length;
+  for (std::size_t k = 0; k < plain.levels.size(); ++k) {
+    const LevelFields& a = plain.levels[k];
+    const LevelFields& b = after.levels[k];
+    EXPECT_NEAR(b.scale / a.scale, scale, 1e-5 * scale);
+    EXPECT_NEAR(b.step / a.step, scale, 1e-5 * scale);
+    double largest = 0;
+    std::vector<double> point_errors, mean_errors, gaussian_errors;
+    for (std::size_t v = 0; v < a.points.size(); ++v) {
+      const Vector3d expected = scale * (turn * plain.point(k, v)) + shift;
+      const double error = (after.point(k, v) - expected).norm() / (scale * edge);
+      largest = std::max(largest, error);
+      point_errors.push_back(error);
+      mean_errors.push_back(std::abs(b.mean_curvature[v] * scale - a.mean_curvature[v]));
+      gaussian_errors.push_back(
+          std::abs(b.gaussian_curvature[v] * scale * scale - a.gaussian_curvature[v]));
+    }
+    // A sample that falls on the other side of a vertex takes another way round it: a few vertices
+    // may differ, by little.
+    EXPECT_LT(median(std::move(point_errors)), 2e-5) << "level " << k;
+    EXPECT_LT(largest, 2e-2) << "level " << k;
+    EXPECT_LT(median(std::move(mean_errors)), 1e-3) << "level " << k;  // |H| is 1 ... 4
+    EXPECT_LT(median(std::move(gaussian_errors)), 5e-3) << "level " << k;
+  }
+}
+
+TEST(EvolvingSurfaceTest, SimilarityFirstOrEvolutionFirst_Theorem1) {
+  const auto none = Eigen::Quaterniond::Identity();
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(2.1, Vector3d(-1, 2, 0.5).normalized()));
+  const TriangleMesh mesh = rough_torus();
+  expect_similar(mesh, 0.001, none, Vector3d::Zero());
+  expect_similar(mesh, 1000, none, Vector3d::Zero());
+  expect_similar(mesh, 1, turn, Vector3d::Zero());
+  expect_similar(mesh, 1, none, {3.25, -1.5, 0.125});
+  expect_similar(mesh, 1000, turn, {4e6, -2e6, 1e5});  // metres to map millimetres
+}
+
+// Lengths are kept in a unit that is a power of two, so such a scaling does not touch a digit.
+TEST(EvolvingSurfaceTest, ScalingByAPowerOfTwoIsExact) {
+  const EvolvedMesh plain = evolve_mesh(rough_torus(), 3);
+  for (const double scale : {0x1p-30, 0x1p-1, 0x1p5, 0x1p30}) {
+    TriangleMesh mesh = rough_torus();
+    for (auto& p : mesh.points) p *= scale;
+    const EvolvedMesh scaled = evolve_mesh(mesh, 3);
+    for (std::size_t k = 0; k < plain.levels.size(); ++k)
+      for (std::size_t v = 0; v < plain.levels[k].points.size(); ++v) {
+        ASSERT_EQ(scaled.point(k, v), scale * plain.point(k, v)) << "scale " << scale;
+        ASSERT_EQ(scaled.levels[k].mean_curvature[v] * scale, plain.levels[k].mean_curvature[v]);
+      }
+  }
+}
+
+/// The farthest that points reach into a direction.
+double reach(const std::vector<Vector3d>& points, const Vector3d& direction) {
+  double farthest = -1e300;
+  for (const auto& p : points) farthest = std::max(farthest, p.dot(direction));
+  return farthest;
+}
+
+// Without the rescaling a closed surface never leaves its convex hull (Theorem 2), and level 1 is
+// that smoothed surface, enlarged about its centroid to the first mean edge length (5.1).
+TEST(EvolvingSurfaceTest, StaysInItsConvexHullButForTheRescaling_Theorem2) {
+  const TriangleMesh mesh = rough_torus();
+  const EvolvedMesh evolved = evolve_mesh(mesh, 1, {.curved = false});
+  kernels::PreparedSurface prepared(mesh, false);
+  const auto step = static_cast<float>(evolved.levels[0].step);
+  std::vector<Vector3d> before, smoothed;
+  for (std::int32_t v = 0; v < prepared.surface.vertex_count(); ++v) {
+    before.push_back(prepared.points[v].head<3>().cast<double>());
+    smoothed.push_back(
+        kernels::evolve_vertex(prepared.sampled(), v, step).position.cast<double>());
+  }
+  for (const Vector3d& direction : shapes::icosphere(2).points)
+    EXPECT_LT(reach(smoothed, direction), reach(before, direction)) << direction.transpose();
+
+  kernels::Surface surface = prepared.surface;
+  const double first = kernels::mean_edge_length(surface);
+  double area = 0;
+  Vector3d centre = Vector3d::Zero();
+  for (const auto& t : surface.triangles) {
+    const Vector3d a = smoothed[t[0]], b = smoothed[t[1]], c = smoothed[t[2]];
+    const double face = (b - a).cross(c - a).norm();
+    area += face;
+    centre += face * (a + b + c) / 3;
+  }
+  centre /= area;
+  for (std::size_t v = 0; v < smoothed.size(); ++v) surface.points[v] = smoothed[v].cast<float>();
+  const double factor = first / kernels::mean_edge_length(surface);
+  EXPECT_GT(factor, 1.01);
+  const auto order = kernels::locality_order(evolved.surface);
+  for (std::size_t v = 0; v < smoothed.size(); ++v)
+    EXPECT_LT((centre + factor * (smoothed[v] - centre) - evolved.point(1, order[v])).norm(), 2e-6);
+}
+
+TEST(EvolvingSurfaceTest, PartsEvolveIndependently) {
+  const TriangleMesh torus = rough_torus();
+  TriangleMesh other = rough_torus();
+  for (auto& p : other.points) p = Vector3d(-p.y(), p.x(), p.z());  // the same mean edge length
+  const Vector3d away(0, 0, 2);
+  const EvolvedMesh both = evolve_mesh(joined(torus, moved(other, away)), 5);
+  ASSERT_EQ(both.surface.part_count, 2);
+  const EvolvedMesh alone = evolve_mesh(torus, 5);
+  const EvolvedMesh other_alone = evolve_mesh(moved(other, away), 5);
+  for (std::size_t k = 0; k <= 5; ++k) {
+    const std::size_t n = alone.levels[k].points.size();
+    EXPECT_NEAR(both.levels[k].scale, alone.levels[k].scale, 1e-6);
+    std::vector<double> first, second;
+    for (std::size_t v = 0; v < n; ++v) {
+      first.push_back((both.point(k, v) - alone.point(k, v)).norm());
+      second.push_back((both.point(k, n + v) - other_alone.point(k, v)).norm());
+    }
+    EXPECT_LT(*std::ranges::max_element(first), 1e-3) << "level " << k;
+    EXPECT_LT(*std::ranges::max_element(second), 1e-3) << "level " << k;
+    EXPECT_LT(median(std::move(first)), 1e-6) << "level " << k;
+    EXPECT_LT(median(std::move(second)), 1e-6) << "level " << k;
+  }
+}
+
+TEST(EvolvingSurfaceTest, ScaleIsTheSmoothingSoFarAndTheStep) {
+  const double variance_of_a_pass = kernels::gaussian_filters().variance;
+  for (const double factor : {0.5, 1.0, 2.0}) {
+    const EvolvedMesh evolved = evolve_mesh(rough_torus(), 12, {.step_factor = factor});
+    double variance = 0, previous = 0;
+    for (const LevelFields& level : evolved.levels) {
+      EXPECT_NEAR(level.step, factor * level.mean_edge_length, 1e-12);
+      EXPECT_NEAR(level.scale, std::sqrt(variance + level.step * level.step), 1e-9);
+      EXPECT_GT(level.scale, previous);
+      // One closed part: the rescaling gives every level the first mean edge length.
+      EXPECT_NEAR(level.mean_edge_length, evolved.levels[0].mean_edge_length, 1e-6);
+      previous = level.scale;
+      variance += variance_of_a_pass * level.step * level.step;
+    }
+  }
+}
+
+TEST(EvolvingSurfaceTest, ALargerStepSmoothsMore) {
+  const auto roughness = [](double factor) {
+    TriangleMesh mesh = shapes::icosphere(4);
+    shapes::add_noise(mesh, 0.003, 5);
+    const EvolvedMesh evolved = evolve_mesh(mesh, 1, {.step_factor = factor});
+    return median_error(evolved.levels[1].mean_curvature, evolved.levels[1], -1);
+  };
+  EXPECT_LT(roughness(1), 0.5 * roughness(0.5));
+  EXPECT_LT(roughness(2), 0.5 * roughness(1));
+}
+
+// Flat triangles lie inside a sphere by as much as its curvature shows, at every resolution.
+TEST(EvolvingSurfaceTest, FlatFacesOverestimateCurvature) {
+  for (const bool curved : {true, false}) {
+    const EvolvedMesh evolved = evolve_mesh(shapes::icosphere(4), 3, {.curved = curved});
+    for (const LevelFields& level : evolved.levels) {
+      std::vector<double> gaussian(level.gaussian_curvature.begin(),
+                                   level.gaussian_curvature.end());
+      const double error = median(std::move(gaussian)) - 1;
+      if (curved) {
+        EXPECT_NEAR(error, 0, 0.008);
+      } else {
+        EXPECT_NEAR(error, 0.055, 0.01);
+      }
+    }
+  }
+}
+
+TEST(EvolvingSurfaceTest, EveryNumberOfThreadsGivesTheSame) {
+  // More faces and vertices than one block of either, in several parts, with a rim.
+  const TriangleMesh mesh =
+      joined(joined(shapes::torus(1, 0.4, 120, 60, 0.3), moved(shapes::plane(2, 40), {0, 0, 3})),
+             tetrahedron(0.01, {5, 0, 0}));
+  const EvolvedMesh one = evolve_mesh(mesh, 4, {}, 1);
+  for (const int threads : {2, 4}) {
+    const EvolvedMesh more = evolve_mesh(mesh, 4, {}, threads);
+    for (std::size_t k = 0; k < one.levels.size(); ++k) {
+      const LevelFields& a = one.levels[k];
+      const LevelFields& b = more.levels[k];
+      EXPECT_TRUE(same_bytes(a.points, b.points)) << threads << " threads, level " << k;
+      EXPECT_TRUE(same_bytes(a.normals, b.normals));
+      EXPECT_TRUE(same_bytes(a.gaussian_curvature, b.gaussian_curvature));
+      EXPECT_TRUE(same_bytes(a.mean_curvature, b.mean_curvature));
+      EXPECT_TRUE(same_bytes(a.patch_completeness, b.patch_completeness));
+      EXPECT_EQ(a.scale, b.scale);
+      EXPECT_EQ(a.step, b.step);
+      EXPECT_EQ(a.mean_edge_length, b.mean_edge_length);
+    }
+  }
+}
+
+// Parts far smaller than a patch have no curvature, but they must not spoil anything either.
+TEST(EvolvingSurfaceTest, TinyPartsStayFiniteAndInPlace) {
+  const TriangleMesh triangle = {{{0, 3, 0}, {0.001, 3, 0}, {0, 3.001, 0}}, {{0, 1, 2}}};
+  const TriangleMesh needle = {{{0, -3, 0}, {0.5, -3, 0}, {1, -3, 0}}, {{0, 1, 2}}};
+  const TriangleMesh mesh = joined(
+      joined(joined(rough_torus(), triangle), tetrahedron(1e-4, {3, 0, 0})), needle);
+  for (const bool curved : {true, false}) {
+    const EvolvedMesh evolved = evolve_mesh(mesh, 20, {.curved = curved});
+    ASSERT_EQ(evolved.surface.part_count, 4);
+    for (std::size_t k = 0; k < evolved.levels.size(); ++k) {
+      ASSERT_TRUE(all_finite(evolved.levels[k])) << "level " << k;
+      if (k > 0) {
+        EXPECT_GT(evolved.levels[k].scale, evolved.levels[k - 1].scale);
+      }
+      for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+        if (evolved.surface.part[v] == 0) continue;
+        EXPECT_LT((evolved.point(k, v) - mesh.points[v]).norm(), 1) << "level " << k;
+        EXPECT_EQ(evolved.levels[k].patch_completeness[v], 0);
+      }
+    }
+  }
+}
+
+TEST(EvolvingSurfaceTest, ATetrahedronAloneAndATriangleAloneStayFinite) {
+  const TriangleMesh triangle = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  for (const TriangleMesh& mesh : {triangle, tetrahedron(1, {0, 0, 0})}) {
+    const EvolvedMesh evolved = evolve_mesh(mesh, 20);
+    for (std::size_t k = 0; k < evolved.levels.size(); ++k) {
+      EXPECT_TRUE(all_finite(evolved.levels[k])) << "level " << k;
+      if (k > 0) {
+        EXPECT_GT(evolved.levels[k].scale, evolved.levels[k - 1].scale);
+      }
+    }
+  }
+}
+
+TEST(EvolvingSurfaceTest, TellsTheObserverOfEveryVertexOfEveryLevel) {
+  struct Counter : engine::Observer {
+    std::atomic<std::int64_t> work = 0;
+    void worked(std::int64_t amount) override { work += amount; }
+  } counter;
+  engine::Workers workers(2);
+  const kernels::Surface built = kernels::build_surface(rough_torus()).surface;
+  EvolvingSurface evolving(kernels::reordered(built, kernels::locality_order(built)), {},
+                           {workers, counter, {}});
+  evolving.advance(true);
+  evolving.advance(false);
+  EXPECT_EQ(counter.work, 2 * 80 * 36);
+}
+
+}  // namespace
+}  // namespace semigeo::jobs

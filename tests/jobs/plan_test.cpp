@@ -1,0 +1,330 @@
+#include "jobs/plan.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+
+#include "engine/run_context.hpp"
+#include "io/error.hpp"
+#include "io/file_digest.hpp"
+#include "jobs/stages/surface_job.hpp"
+#include "tests/support/scan_file.hpp"
+#include "tests/support/shapes.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FindScansTest : public testing::Test {
+ protected:
+  /// An empty file; finding does not look inside.
+  fs::path add(const fs::path& file) {
+    fs::create_directories((folder_ / file).parent_path());
+    std::ofstream(folder_ / file).flush();
+    return folder_ / file;
+  }
+  std::vector<FoundScan> find(const std::vector<fs::path>& inputs) {
+    return find_scans(inputs, folder_ / "archive");
+  }
+  std::vector<std::string> names(const std::vector<fs::path>& inputs) {
+    std::vector<std::string> result;
+    for (const FoundScan& scan : find(inputs)) result.push_back(scan.name);
+    return result;
+  }
+
+  tests::TemporaryFolder folder_;
+};
+
+using Names = std::vector<std::string>;
+
+TEST_F(FindScansTest, SearchesFoldersForScansOfEveryFormat) {
+  for (const char* file : {"in/b.obj", "in/a.ply", "in/deep/er/c.off", "in/d.STL", "in/e.stl.gz",
+                           "in/f.Ply.GZ", "in/notes.txt", "in/g.ply.bak", "in/h.gz", "in/ply"})
+    add(file);
+  EXPECT_EQ(names({folder_ / "in"}),
+            (Names{"a.ply", "b.obj", "d.STL", "deep__er__c.off", "e.stl.gz", "f.Ply.GZ"}));
+}
+
+TEST_F(FindScansTest, TheOrderIsThatOfNamesWhateverTheFileSystemSays) {
+  for (const char* file : {"in/z.ply", "in/b/z.ply", "in/m.ply", "in/b/a.ply", "in/a.ply"})
+    add(file);
+  EXPECT_EQ(names({folder_ / "in"}),
+            (Names{"a.ply", "b__a.ply", "b__z.ply", "m.ply", "z.ply"}));
+}
+
+TEST_F(FindScansTest, PassesOverHiddenThingsAndTheArchive) {
+  for (const char* file : {"in/a.ply", "in/.b.ply", "in/.git/c.ply", "in/x/.y/d.ply"}) add(file);
+  add("archive/scans/e.ply");
+  EXPECT_EQ(names({folder_ / "in"}), Names{"a.ply"});
+  EXPECT_EQ(names({folder_.path()}), Names{"in__a.ply"});
+  EXPECT_EQ(find_scans({folder_.path()}, folder_ / "in" / ".." / "archive").size(), 1u);
+}
+
+TEST_F(FindScansTest, FoldersMayBeNamedLikeScans) {
+  add("in/folder.ply/a.ply");
+  EXPECT_EQ(names({folder_ / "in"}), Names{"folder.ply__a.ply"});
+}
+
+TEST_F(FindScansTest, LinksToFoldersAreNotFollowed) {
+  add("in/a/x.ply");
+  add("elsewhere/y.ply");
+  fs::create_directory_symlink(folder_ / "in", folder_ / "in/a/up");
+  fs::create_directory_symlink(folder_ / "elsewhere", folder_ / "in/there");
+  EXPECT_EQ(names({folder_ / "in"}), Names{"a__x.ply"});
+  // A link that the user names is meant.
+  EXPECT_EQ(names({folder_ / "in/there"}), Names{"y.ply"});
+}
+
+TEST_F(FindScansTest, LinksToScansAreScansOnce) {
+  const fs::path real = add("in/real.ply");
+  fs::create_symlink(real, folder_ / "in/z.ply");
+  EXPECT_EQ(names({folder_ / "in"}), Names{"real.ply"});
+}
+
+// Only its own job may fail, later and by name.
+TEST_F(FindScansTest, LinksThatLeadNowhereDoNotHideTheOthers) {
+  add("in/good.ply");
+  fs::create_symlink("b.ply", folder_ / "in/a.ply");
+  fs::create_symlink("a.ply", folder_ / "in/b.ply");
+  fs::create_symlink("gone", folder_ / "in/dangling.ply");
+  EXPECT_EQ(names({folder_ / "in"}), (Names{"a.ply", "b.ply", "dangling.ply", "good.ply"}));
+}
+
+TEST_F(FindScansTest, AScanNamedTwiceIsOneScan) {
+  add("in/a.ply");
+  add("in/b/c.ply");
+  EXPECT_EQ(names({folder_ / "in", folder_ / "in/a.ply", folder_ / "in/b", folder_ / "in/b/../a.ply",
+                   folder_ / "in"}),
+            (Names{"a.ply", "b__c.ply"}));
+}
+
+TEST_F(FindScansTest, TheWayAFolderIsWrittenDoesNotMatter) {
+  add("in/b/c.ply");
+  for (const char* way : {"in", "in/", "in/.", "in/b/..", "./in"})
+    EXPECT_EQ(names({folder_ / way}), Names{"b__c.ply"}) << way;
+}
+
+TEST_F(FindScansTest, NamesAreSafeWhateverThePath) {
+  const std::string parts[] = {"Krug Nº 7",  "spaces in it", "a..b", "..hidden..", "new\nline",
+                               "back\\slash", "quote'\"",     "-x",   "%41",        "\xff\xfe",
+                               "__",          "a__b",         "*?",   "~",          "日本"};
+  for (const auto& part : parts) add("in/d/" + part + ".ply");
+  for (const auto& part : parts)
+    if (!part.starts_with('.')) add("in/" + part + "/x.ply");
+  const auto found = names({folder_ / "in"});
+  EXPECT_EQ(found.size(), 14u + 14u);
+  for (const std::string& name : found) {
+    EXPECT_TRUE(std::ranges::all_of(name, [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+             c == '.' || c == '-' || c == '_';
+    })) << name;
+    EXPECT_FALSE(name.starts_with('.')) << name;
+  }
+  EXPECT_EQ(std::set(found.begin(), found.end()).size(), found.size());
+}
+
+TEST_F(FindScansTest, HiddenScansThatTheUserNamesGetVisibleNames) {
+  add(".a.ply");
+  const auto found = names({folder_ / ".a.ply"});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_FALSE(found[0].starts_with('.')) << found[0];
+}
+
+TEST_F(FindScansTest, NamesThatCouldBeMisreadEndInAHash) {
+  for (const char* file : {"in/a/b.ply", "in/a__b.ply", "in/a b.ply", "in/a_b.ply", "in/a/_b.ply",
+                           "in/a_/b.ply", "in/a/_/b.ply"})
+    add(file);
+  const auto found = names({folder_ / "in"});
+  EXPECT_EQ(std::set(found.begin(), found.end()).size(), 7u);
+  EXPECT_EQ(std::ranges::count(found, "a__b.ply"), 1);
+  EXPECT_EQ(std::ranges::count(found, "a_b.ply"), 1);
+}
+
+// Or adding one scan would rename, and compute again, another.
+TEST_F(FindScansTest, ANameDependsOnThePathAlone) {
+  const char* const files[] = {"in/a_/b.ply", "in/a/_b.ply", "in/a__b.ply", "in/a b.ply",
+                               "in/a/b.ply"};
+  for (const char* file : files) add(file);
+  const auto together = find({folder_ / "in"});
+  ASSERT_EQ(together.size(), 5u);
+  for (const FoundScan& scan : together) {
+    fs::remove_all(folder_ / "in");
+    add(scan.input.lexically_relative(folder_.path()));
+    EXPECT_EQ(names({folder_ / "in"}), Names{scan.name}) << scan.input;
+  }
+}
+
+TEST_F(FindScansTest, LongPathsGetShortNames) {
+  std::string path = "in";
+  for (int i = 0; i < 20; ++i) path += "/" + std::string(30, static_cast<char>('a' + i));
+  add(path + "/x.ply");
+  add(path.replace(3, 1, "b") + "/x.ply");  // differs in what is cut off
+  const auto found = names({folder_ / "in"});
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_NE(found[0], found[1]);
+  for (const auto& name : found) EXPECT_LT(name.size(), 200u);
+}
+
+TEST_F(FindScansTest, TheSamePathInTwoFoldersGivesTwoNames) {
+  add("one/x/a.ply");
+  add("two/x/a.ply");
+  add("two/x/b.ply");
+  const auto found = find({folder_ / "one", folder_ / "two"});
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].name, "x__a.ply");
+  EXPECT_TRUE(found[1].name.starts_with("x__a.ply-")) << found[1].name;
+  EXPECT_EQ(found[1].input, folder_ / "two/x/a.ply");
+  EXPECT_EQ(found[2].name, "x__b.ply");
+}
+
+TEST_F(FindScansTest, InputsThatAreNoScansAreErrorsThatNameThem) {
+  add("in/a.ply");
+  add("in/notes.txt");
+  for (const char* input : {"in/missing.ply", "missing", "in/notes.txt", "in/a.ply/b.ply"}) {
+    try {
+      find({folder_ / "in/a.ply", folder_ / input});
+      ADD_FAILURE() << input << " was accepted";
+    } catch (const io::Error& error) {
+      EXPECT_EQ(error.file(), folder_ / input);
+      EXPECT_FALSE(error.remedy().empty());
+    }
+  }
+}
+
+TEST_F(FindScansTest, AnEmptyFolderHoldsNothing) {
+  fs::create_directories(folder_ / "in");
+  EXPECT_TRUE(find({folder_ / "in"}).empty());
+}
+
+TEST(JobKeyTest, ChangesWithEverythingThatTheContentDependsOn) {
+  std::set<std::string> keys = {job_key("a.ply", "1234", {})};
+  const auto is_new = [&](const std::string& key) { return keys.insert(key).second; };
+  EXPECT_TRUE(is_new(job_key("b.ply", "1234", {})));
+  EXPECT_TRUE(is_new(job_key("a.ply", "1235", {})));
+  EXPECT_TRUE(is_new(job_key("a.ply", "1234", {.levels = 9})));
+  EXPECT_TRUE(is_new(job_key("a.ply", "1234", {.curved = false})));
+  EXPECT_TRUE(is_new(job_key("a.ply", "1234", {.step = 1.0000001})));
+  EXPECT_TRUE(is_new(job_key("a.ply", "1234", {.compression = io::Compression::none})));
+  EXPECT_TRUE(is_new(job_key("a.ply", "1234", {.length_unit = "mm"})));
+  EXPECT_FALSE(is_new(job_key("a.ply", "1234", {})));
+}
+
+class PlanJobsTest : public testing::Test {
+ protected:
+  PlanJobsTest() {
+    fs::create_directories(folder_ / "in");
+    fs::create_directories(folder_ / "archive/scans");
+    tests::write_obj(folder_ / "in/a.obj", shapes::icosphere(1));
+    tests::write_obj(folder_ / "in/b.obj", shapes::cube(1, 2));
+    config_.inputs = {folder_ / "in"};
+    config_.archive = folder_ / "archive";
+    config_.surface.levels = 1;
+  }
+  void run_all() {
+    for (const PlannedJob& planned : plan_jobs(config_))
+      if (!planned.up_to_date) run_surface_job(planned.job, config_.surface, context_);
+  }
+  /// The reasons why jobs run, "" for those that do not.
+  Names reasons() {
+    Names result;
+    for (const PlannedJob& planned : plan_jobs(config_)) {
+      EXPECT_EQ(planned.up_to_date, planned.reason.empty() && planned.error.empty());
+      result.push_back(planned.error.empty() ? planned.reason : planned.error);
+    }
+    return result;
+  }
+
+  tests::TemporaryFolder folder_;
+  RunConfig config_;
+  engine::Workers workers_{1};
+  engine::Observer observer_;
+  engine::RunContext context_{workers_, observer_, {}};
+};
+
+const Names kBothUpToDate = {"", ""};
+constexpr const char* kMissing = "no dataset yet";
+constexpr const char* kChanged = "the scan, the parameters or the version changed";
+constexpr const char* kDamaged = "the dataset is damaged or incomplete";
+
+TEST_F(PlanJobsTest, DescribesEachJob) {
+  const auto plan = plan_jobs(config_);
+  ASSERT_EQ(plan.size(), 2u);
+  const SurfaceJob& job = plan[0].job;
+  EXPECT_EQ(job.input, folder_ / "in/a.obj");
+  EXPECT_EQ(job.name, "a.obj");
+  EXPECT_EQ(job.output, folder_ / "archive/scans/a.obj.vtkhdf");
+  EXPECT_EQ(job.input_xxh3, io::xxh3_of_file(folder_ / "in/a.obj"));
+  EXPECT_EQ(job.key, job_key("a.obj", job.input_xxh3, config_.surface));
+}
+
+TEST_F(PlanJobsTest, WhatWasRunIsUpToDate) {
+  EXPECT_EQ(reasons(), (Names{kMissing, kMissing}));
+  run_all();
+  EXPECT_EQ(reasons(), kBothUpToDate);
+}
+
+TEST_F(PlanJobsTest, TimesAndThreadsDoNotMatter) {
+  run_all();
+  config_.threads = 7;
+  for (const char* file : {"in/a.obj", "archive/scans/b.obj.vtkhdf"}) {
+    const timespec times[] = {{1'000'000'000, 0}, {1'000'000'000, 0}};
+    ASSERT_EQ(utimensat(AT_FDCWD, (folder_ / file).c_str(), times, 0), 0);
+  }
+  // The same bytes in another file, at another place.
+  fs::copy(folder_ / "in", folder_ / "moved");
+  config_.inputs = {folder_ / "moved"};
+  EXPECT_EQ(reasons(), kBothUpToDate);
+}
+
+TEST_F(PlanJobsTest, AChangedScanIsRunAlone) {
+  run_all();
+  const auto time = fs::last_write_time(folder_ / "in/b.obj");
+  std::ofstream(folder_ / "in/b.obj", std::ios::app) << "# changed\n";
+  fs::last_write_time(folder_ / "in/b.obj", time);
+  EXPECT_EQ(reasons(), (Names{"", kChanged}));
+  run_all();
+  EXPECT_EQ(reasons(), kBothUpToDate);
+}
+
+TEST_F(PlanJobsTest, AChangedParameterRunsAll) {
+  run_all();
+  config_.surface.step = 1.5;
+  EXPECT_EQ(reasons(), (Names{kChanged, kChanged}));
+  config_.surface.step = 1;
+  EXPECT_EQ(reasons(), kBothUpToDate);
+}
+
+TEST_F(PlanJobsTest, ADamagedDatasetIsRunAgain) {
+  run_all();
+  fs::resize_file(folder_ / "archive/scans/a.obj.vtkhdf", 1000);
+  std::ofstream(folder_ / "archive/scans/b.obj.vtkhdf") << "not HDF5";
+  EXPECT_EQ(reasons(), (Names{kDamaged, kDamaged}));
+  run_all();
+  EXPECT_EQ(reasons(), kBothUpToDate);
+}
+
+TEST_F(PlanJobsTest, AnUnreadableScanIsPlannedWithItsError) {
+  fs::create_symlink("gone", folder_ / "in/c.obj");
+  ASSERT_EQ(mkfifo((folder_ / "in/d.obj").c_str(), 0600), 0);
+  const auto plan = plan_jobs(config_);
+  ASSERT_EQ(plan.size(), 4u);
+  EXPECT_TRUE(plan[0].error.empty());
+  EXPECT_NE(plan[2].error.find("c.obj"), std::string::npos) << plan[2].error;
+  EXPECT_NE(plan[3].error.find("d.obj"), std::string::npos) << plan[3].error;
+  EXPECT_FALSE(plan[2].up_to_date);
+}
+
+TEST_F(PlanJobsTest, WritesNothing) {
+  fs::remove_all(folder_ / "archive");
+  reasons();
+  EXPECT_FALSE(fs::exists(folder_ / "archive"));
+}
+
+}  // namespace
+}  // namespace semigeo::jobs
