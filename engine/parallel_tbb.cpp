@@ -1,11 +1,13 @@
 // The oneTBB back end of engine/parallel.
 #include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 #include <oneapi/tbb/task_group.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "engine/parallel.hpp"
@@ -13,8 +15,13 @@
 namespace semigeo::engine {
 
 struct Workers::Backend {
-  explicit Backend(int threads) : arena(threads) {}
+  explicit Backend(int threads) : arena(threads) {
+    // oneTBB starts no more threads than there are cores unless told so.
+    if (threads > tbb::info::default_concurrency())
+      more_threads.emplace(tbb::global_control::max_allowed_parallelism, threads);
+  }
   tbb::task_arena arena;
+  std::optional<tbb::global_control> more_threads;
 };
 
 Workers::Workers(int threads)

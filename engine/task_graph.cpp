@@ -60,7 +60,7 @@ struct TaskGraph::Run {
   std::vector<Outcome> outcomes;
 };
 
-TaskGraph::Task TaskGraph::add(std::string name, std::vector<Task> after,
+TaskGraph::Task TaskGraph::add(std::string name, const std::vector<Task>& after,
                                std::function<void()> work, double cost) {
   const auto task = static_cast<Task>(nodes_.size());
   for (const Task t : after) nodes_[t].before.push_back(task);

@@ -25,7 +25,8 @@ class TaskGraph {
   /// Adds a task that comes after the tasks `after`, which must have been added before (so no cycle
   /// can arise). Of several ready tasks the one with the highest `cost` is preferred; a task's
   /// own parallelism is its own affair.
-  Task add(std::string name, std::vector<Task> after, std::function<void()> work, double cost = 1);
+  Task add(std::string name, const std::vector<Task>& after, std::function<void()> work,
+           double cost = 1);
 
   /// Runs all tasks; result[t] is the outcome of task t. After a stop request no further task
   /// starts.

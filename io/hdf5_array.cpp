@@ -42,15 +42,20 @@ Hdf5Handle array_properties() {
   return properties;
 }
 
-// The filters that Compression stands for, in order; nothing if they are others.
-std::optional<Compression> compression_of(hid_t properties) {
+// The filters that Compression stands for, in order; nothing if they are others. Our decoder needs no
+// parameters of theirs, but other readers do: shuffle's must be the size of an element.
+std::optional<Compression> compression_of(hid_t properties, ElementType type) {
   std::vector<H5Z_filter_t> filters;
   for (int i = 0; i < H5Pget_nfilters(properties); ++i) {
     unsigned flags = 0;
     unsigned config = 0;
-    std::size_t values = 0;
-    filters.push_back(H5Pget_filter2(properties, static_cast<unsigned>(i), &flags, &values, nullptr,
-                                     0, nullptr, &config));
+    unsigned value = 0;
+    std::size_t values = 1;
+    const H5Z_filter_t filter = H5Pget_filter2(properties, static_cast<unsigned>(i), &flags,
+                                               &values, &value, 0, nullptr, &config);
+    if (filter == H5Z_FILTER_SHUFFLE && value != size_of(type)) return std::nullopt;
+    if (filter == H5Z_FILTER_DEFLATE && value > kHighestDeflateLevel) return std::nullopt;
+    filters.push_back(filter);
   }
   if (filters == std::vector<H5Z_filter_t>{H5Z_FILTER_FLETCHER32}) return Compression::none;
   if (filters ==
@@ -173,7 +178,7 @@ void Hdf5File::Array::describe_chunks(std::int64_t creation) {
   if (chunk[0] > static_cast<hsize_t>(kLargestChunk / shape_.row_bytes()))
     file_->refuse(path_, "its chunks are too large");
   shape_.chunk_rows = static_cast<std::int64_t>(chunk[0]);
-  const std::optional<Compression> compression = compression_of(creation);
+  const std::optional<Compression> compression = compression_of(creation, shape_.type);
   if (!compression) file_->refuse(path_, "its filters are none that a dataset uses");
   shape_.compression = *compression;
 }

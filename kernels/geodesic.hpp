@@ -62,7 +62,7 @@ struct GeodesicMesh {
 inline constexpr float kSnap = 1e-4f;
 /// A half-line that has crossed this many faces ends: the mesh is far finer here than its mean
 /// edge.
-inline constexpr int kMaxCrossings = 1024;
+inline constexpr int kMaxCrossings = 400;
 /// A half-line ends at a vertex with more faces than this: finding its way round the hub of a fan of
 /// 100,000 would cost as much as a whole scan.
 inline constexpr int kMaxFan = 1024;

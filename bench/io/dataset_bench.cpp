@@ -67,9 +67,9 @@ void write(const fs::path& path, const Content& content, Compression compression
   io::DatasetWriter writer(path, {}, compression);
   writer.write_connectivity(content.encode_connectivity(compression));
   for (int k = 0; k < kLevels; ++k)
-    writer.write_level({.iteration = k, .step = 1, .scale = std::sqrt(k + 1.0),
-                        .mean_edge_length = 1, .parts = 1},
-                       content.encode_fields(compression));
+    writer.write_level(
+        {.iteration = k, .step = 1, .scale = std::sqrt(k + 1.0), .mean_edge_length = 1, .parts = 1},
+        content.encode_fields(compression));
   writer.finish();
 }
 

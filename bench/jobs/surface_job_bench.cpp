@@ -48,8 +48,7 @@ void write_icosphere(const fs::path& path, int subdivisions) {
 void surface_job_icosphere(benchmark::State& state) {
   const tests::TemporaryFolder folder;
   write_icosphere(folder / "sphere.ply", static_cast<int>(state.range(0)));
-  run(state, folder / "sphere.ply", folder / "sphere.ply.vtkhdf",
-      static_cast<int>(state.range(1)));
+  run(state, folder / "sphere.ply", folder / "sphere.ply.vtkhdf", static_cast<int>(state.range(1)));
 }
 BENCHMARK(surface_job_icosphere)
     ->ArgNames({"subdivisions", "threads"})

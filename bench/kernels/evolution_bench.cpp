@@ -1,5 +1,5 @@
-// One patch traced, convolved and turned into curvature: what a vertex costs without threads, jobs or
-// the preparation of faces.
+// One patch traced, convolved and turned into curvature: what a vertex costs without threads, jobs
+// or the preparation of faces.
 #include "kernels/evolution.hpp"
 
 #include <benchmark/benchmark.h>

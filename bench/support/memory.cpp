@@ -27,9 +27,13 @@ PeakMemory::PeakMemory() {
   resident_at_start_ = status_bytes("VmRSS");
 }
 
-std::int64_t PeakMemory::peak_bytes() const { return status_bytes("VmHWM"); }
+std::int64_t PeakMemory::peak_bytes() const {
+  return status_bytes("VmHWM");
+}
 
-std::int64_t PeakMemory::grown_bytes() const { return peak_bytes() - resident_at_start_; }
+std::int64_t PeakMemory::grown_bytes() const {
+  return peak_bytes() - resident_at_start_;
+}
 
 void report_memory(benchmark::State& state, const PeakMemory& memory, std::int64_t vertices) {
   using benchmark::Counter;

@@ -6,8 +6,8 @@
 
 namespace semigeo::bench {
 
-/// Peak resident memory of the process since this object was made, as Linux counts it. What was freed
-/// before is given back to the system first, so that it does not hide what comes.
+/// Peak resident memory of the process since this object was made, as Linux counts it. What was
+/// freed before is given back to the system first, so that it does not hide what comes.
 class PeakMemory {
  public:
   PeakMemory();

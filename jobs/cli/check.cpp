@@ -6,6 +6,7 @@
 #include "io/error.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/datasets.hpp"
+#include "jobs/cli/json_output.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {
@@ -31,7 +32,7 @@ int check(const CheckOptions& options) {
     files.push_back(std::move(entry));
   }
   if (options.json) {
-    std::printf("%s\n", nlohmann::json{{"files", files}, {"broken", broken}}.dump(2).c_str());
+    print_document({{"files", files}, {"broken", broken}});
   } else {
     std::printf("%zu checked, %d broken\n", files.size(), broken);
   }

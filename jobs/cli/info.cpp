@@ -8,6 +8,7 @@
 #include "io/error.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/datasets.hpp"
+#include "jobs/cli/json_output.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {
@@ -140,11 +141,9 @@ int info(const InfoOptions& options) {
     }
   }
   if (options.json)
-    std::printf("%s\n", (archive       ? nlohmann::json{{"datasets", all}}
-                         : all.empty() ? nlohmann::json::object()
-                                       : all.front())
-                            .dump(2)
-                            .c_str());
+    print_document(archive       ? nlohmann::json{{"datasets", all}}
+                   : all.empty() ? nlohmann::json::object()
+                                 : all.front());
   return exit_code;
 }
 

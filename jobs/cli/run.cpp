@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -10,6 +11,7 @@
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "jobs/cli/command.hpp"
+#include "jobs/cli/json_output.hpp"
 #include "jobs/local_executor.hpp"
 
 namespace semigeo::jobs::cli {
@@ -65,7 +67,7 @@ void print_plan(const std::vector<PlannedJob>& plan, bool json) {
       if (!p.error.empty()) scan["error"] = p.error;
       scans.push_back(std::move(scan));
     }
-    std::printf("%s\n", nlohmann::json{{"scans", scans}}.dump(2).c_str());
+    print_document({{"scans", scans}});
     return;
   }
   std::int64_t to_run = 0;
@@ -120,7 +122,7 @@ void print_json(const std::vector<PlannedJob>& plan, const std::vector<JobOutcom
                                    {"wall_seconds", summary.wall_seconds},
                                    {"cpu_seconds", summary.cpu_seconds},
                                    {"peak_memory_bytes", summary.peak_bytes}};
-  std::printf("%s\n", document.dump(2).c_str());
+  print_document(document);
 }
 
 /// One line a scan whose file had to be repaired; then the failures; then the totals.
@@ -147,6 +149,19 @@ void print_text(const std::vector<PlannedJob>& plan, const std::vector<JobOutcom
       static_cast<long long>(summary.failed), short_number(summary.rate()).c_str(),
       short_duration(summary.wall_seconds).c_str(), short_duration(summary.cpu_seconds).c_str(),
       summary.peak_bytes / 1e6);
+}
+
+/// Makes the folder and, the first time, the configuration in it: what fails here fails before the
+/// hours of work.
+void prepare_archive(const fs::path& archive, const std::string& effective_config) {
+  std::error_code error;
+  fs::create_directories(archive, error);
+  if (error)
+    throw io::Error(archive, "", "cannot be created: " + error.message(),
+                    "check --output, its permissions and the free space");
+  io::remove_stale_partials(archive);
+  const fs::path config_file = archive / "semigeo.toml";
+  if (!fs::exists(config_file)) io::write_file_atomically(config_file, effective_config);
 }
 
 int run(const RunOptions& options, const std::string& effective_config) {
@@ -176,6 +191,7 @@ int run(const RunOptions& options, const std::string& effective_config) {
     ++to_run;
     bytes += error ? 0 : size;
   }
+  prepare_archive(options.config.archive, effective_config);
   engine::Workers workers(options.config.threads);
   RunSummary summary;
   std::vector<JobOutcome> outcomes;
@@ -184,9 +200,6 @@ int run(const RunOptions& options, const std::string& effective_config) {
     outcomes = run_jobs(plan, options.config.surface, workers, progress);
     summary.vertex_levels = progress.vertex_levels();
   }
-  const fs::path config_file = options.config.archive / "semigeo.toml";
-  if (!fs::exists(config_file)) io::write_file_atomically(config_file, effective_config);
-
   for (const JobOutcome& outcome : outcomes) {
     summary.done += outcome.state == JobState::kDone;
     summary.up_to_date += outcome.state == JobState::kUpToDate;
@@ -201,6 +214,12 @@ int run(const RunOptions& options, const std::string& effective_config) {
     print_text(plan, outcomes, summary);
   }
   return summary.failed == 0 ? kAllDone : kSomeFailed;
+}
+
+/// CLI::Range lets it pass.
+std::string refuse_nan(const std::string& text) {
+  double value = 0;
+  return CLI::detail::lexical_cast(text, value) && std::isnan(value) ? "give a number" : "";
 }
 
 /// The options that datasets depend on, as --config reads them.
@@ -250,7 +269,8 @@ void add_run(CLI::App& app, int& exit_code) {
                    "What patches sample: quadratic faces, or flat ones as in the thesis")
       ->check(CLI::IsMember({"curved", "flat"}));
   command->add_option("--step", surface.step, "Sample distance of patches, in mean edge lengths")
-      ->check(CLI::Range(0.05, 20.0));
+      ->check(CLI::Range(0.05, 20.0))
+      ->check(refuse_nan);
   command->add_option("--compression", options->compression, "Of the stored arrays")
       ->check(CLI::IsMember({"deflate", "none"}));
   command->add_option("--unit", surface.length_unit, "Length unit of the scans, as a label")

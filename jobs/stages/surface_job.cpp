@@ -160,7 +160,10 @@ void write_levels(EvolvingSurface& surface, const std::vector<std::int32_t>& sto
     if (k >= 1) after.push_back(write[k - 1]);
     write.push_back(graph.add(
         "write " + name, after,
-        [&writer, &level] { writer.write_level(level.attributes, std::move(level.encoded)); },
+        [&writer, &level] {
+          writer.write_level(level.attributes, level.encoded);
+          level.encoded = {};
+        },
         cost / 20));
   }
   rethrow_first(graph.run(context));

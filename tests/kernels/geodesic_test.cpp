@@ -201,7 +201,7 @@ TEST(GeodesicTest, EndsAfterABoundedNumberOfFaces) {
   const PreparedSurface s(std::move(needles), false);
   const GeodesicMesh mesh = s.mesh();
   GeodesicLine line(mesh, ray_at(s, {0.0003f, 0.5f, 0}, {1, 0, 0}));
-  EXPECT_TRUE(line.advance(0.3f));
+  EXPECT_TRUE(line.advance(0.15f));
   EXPECT_FALSE(line.advance(3.0f));
 }
 

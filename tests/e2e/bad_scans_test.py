@@ -1,0 +1,206 @@
+"""Scans, datasets and folders as the night brings them: each failure is named, with its reason, and
+harms nothing else."""
+
+import gzip
+import os
+import shutil
+import struct
+import subprocess
+import unittest
+
+import numpy as np
+
+from support import (PROGRAM, SemigeoTest, contents, icosphere, obj_text, partials, ply_bytes,
+                     ply_header, write_ply)
+
+
+def bad_scans():
+    """File name, bytes, and a word that the reason must hold."""
+    sphere = icosphere(2)
+    whole = ply_bytes(sphere)
+    nan = (sphere[0].copy(), sphere[1])
+    nan[0][7, 1] = np.nan
+    wrong_index = (sphere[0], sphere[1].copy())
+    wrong_index[1][5, 2] = 162
+    return [
+        ("empty.ply", b"", "empty"),
+        ("empty.stl", b"", "empty"),
+        ("text.ply", b"Dear colleague,\nplease find the scan attached.\n", "PLY"),
+        ("truncated.ply", whole[:len(whole) // 2], "end"),
+        ("truncated.ply.gz", gzip.compress(whole, mtime=0)[:-100], "gzip"),
+        ("nan.ply", ply_bytes(nan), "finite"),
+        ("index.ply", ply_bytes(wrong_index), "162"),
+        ("cloud.ply", ply_header(2, 0) + bytes(48), "face"),
+        ("huge.ply", ply_header(10 ** 12, 10 ** 12) + bytes(100), "vert"),
+        ("large.ply", ply_header(150_000_000, 300_000_000) + bytes(1000), "vert"),
+        ("huge.stl", bytes(80) + struct.pack("<I", 2 ** 32 - 1) + bytes(50), "triangle"),
+        ("degenerate.obj", b"v 0 0 0\nv 1 0 0\nv 1 0 0\nf 1 2 3\nf 1 1 2\n", "triangle"),
+        ("letters.obj", b"v 0 0 zero\n", "line 1"),
+        ("binary.off", bytes(range(256)) * 10, "OFF"),
+    ]
+
+
+class BadScansTest(SemigeoTest):
+    def test_each_is_named_with_its_reason_and_the_others_are_done(self):
+        write_ply(self.scans / "a_first.ply", icosphere(2))
+        write_ply(self.scans / "m_middle.ply", icosphere(1))
+        write_ply(self.scans / "z_last.ply", icosphere(2))
+        for name, data, _ in bad_scans():
+            (self.scans / name).write_bytes(data)
+        os.symlink("circle.ply", self.scans / "circle.ply")
+        os.symlink("nowhere", self.scans / "dangling.ply")
+        os.mkfifo(self.scans / "pipe.ply")
+        cases = bad_scans() + [("circle.ply", b"", "symbolic"), ("dangling.ply", b"", "no such"),
+                               ("pipe.ply", b"", "regular")]
+
+        document = self.run_scans("--levels", 2, code=1)
+        self.assertEqual((document["done"], document["failed"]), (3, len(cases)))
+        by_name = {scan["input"]: scan for scan in document["scans"]}
+        for name, _, word in cases:
+            with self.subTest(scan=name):
+                scan = by_name[str(self.scans / name)]
+                self.assertEqual(scan["state"], "failed")
+                self.assertTrue(scan["error"].startswith(f"{self.scans / name}: "), scan["error"])
+                reason = scan["error"][len(str(self.scans / name)):]
+                self.assertIn(word.lower(), reason.lower())
+                self.assertNotIn("\n", reason)
+                self.assertFalse(self.dataset(name).exists())
+        self.assertLess(document["peak_memory_bytes"], 300e6)
+        self.assertEqual(partials(self.archive), {})
+        self.semigeo("check", self.archive)
+
+        # As text: one line each, on stdout, and the totals last.
+        process = self.semigeo("run", self.scans, "--output", self.archive, "--levels", 2, code=1)
+        lines = process.stdout.splitlines()
+        self.assertEqual(sum(line.startswith("failed: ") for line in lines), len(cases))
+        self.assertIn(f"0 done, 3 up to date, {len(cases)} failed", lines[-1])
+
+    def test_names_that_are_no_utf8(self):
+        name = os.fsencode(self.scans) + b"/bad\xffname.obj"
+        with open(name, "w") as file:
+            file.write(obj_text(icosphere(1)))
+        with open(os.fsencode(self.scans) + b"/\xfe.ply", "w") as file:
+            file.write("no ply")
+        self.run_scans("--levels", 1, "--dry-run")
+        document = self.run_scans("--levels", 1, code=1)
+        self.assertEqual((document["done"], document["failed"]), (1, 1))
+        self.semigeo("check", self.archive)
+
+
+class DamagedDatasetTest(SemigeoTest):
+    def setUp(self):
+        super().setUp()
+        for name in ("a", "b", "c"):
+            write_ply(self.scans / f"{name}.ply", icosphere(3, ord(name)))
+        self.run_scans("--levels", 2)
+        self.whole = contents(self.archive)
+
+    def damage(self, name, at):
+        path = self.dataset(name)
+        data = bytearray(path.read_bytes())
+        data[int(at * len(data))] ^= 0x10
+        path.write_bytes(data)
+        return path
+
+    def test_check_passes_what_is_whole(self):
+        process = self.semigeo("check", self.archive)
+        self.assertEqual(process.stdout, "3 checked, 0 broken\n")
+        self.assertEqual(self.semigeo("check", self.dataset("a.ply")).stdout,
+                         "1 checked, 0 broken\n")
+
+    def test_check_finds_one_wrong_bit_and_names_the_file(self):
+        found = 0
+        for at in np.linspace(0.02, 0.98, 25):
+            path = self.damage("b.ply", at)
+            process = subprocess.run([PROGRAM, "check", self.archive], capture_output=True,
+                                     text=True, timeout=60)
+            path.write_bytes(self.whole["scans/b.ply.vtkhdf"])
+            if process.returncode == 0:
+                continue  # a byte that means nothing: HDF5 leaves gaps
+            found += 1
+            self.assertEqual(process.returncode, 1)
+            self.assertIn(f"broken: {path}: ", process.stdout)
+            self.assertIn("3 checked, 1 broken", process.stdout)
+        self.assertGreaterEqual(found, 20)
+
+    def test_a_cut_or_emptied_dataset_is_found_and_remade(self):
+        for size in (0, 100, -1):
+            path = self.dataset("b.ply")
+            with self.subTest(size=size):
+                os.truncate(path, size if size >= 0 else path.stat().st_size - 1)
+                process = self.semigeo("check", self.archive, code=1)
+                self.assertIn(str(path), process.stdout)
+                self.assertEqual(self.states(self.run_scans("--levels", 2)),
+                                 {"a.ply": "up to date", "b.ply": "done", "c.ply": "up to date"})
+                self.assertEqual(contents(self.archive), self.whole)
+
+    def test_a_damaged_dataset_is_remade_once_it_is_removed(self):
+        path = self.damage("b.ply", 0.5)
+        self.semigeo("check", self.archive, code=1)
+        path.unlink()
+        self.assertEqual(self.run_scans("--levels", 2)["done"], 1)
+        self.assertEqual(contents(self.archive), self.whole)
+
+    def test_info_names_the_broken_one_and_shows_the_others(self):
+        self.dataset("b.ply").write_text("not HDF5")
+        process = self.semigeo("info", self.archive, code=1)
+        self.assertIn("b.ply.vtkhdf", process.stderr)
+        self.assertEqual(len(process.stdout.splitlines()), 2)
+
+
+class OutputFolderTest(SemigeoTest):
+    def setUp(self):
+        super().setUp()
+        write_ply(self.scans / "a.ply", icosphere(1))
+
+    def unprivileged(self):
+        """Arguments that run a process as one who may not write everywhere."""
+        if os.geteuid() != 0:
+            return {}
+        self.folder.chmod(0o755)
+        return {"user": 65534, "group": 65534, "extra_groups": []}
+
+    def run_unprivileged(self, archive):
+        program = self.folder / "semigeo"  # where anybody may read it
+        shutil.copy(PROGRAM, program)
+        return subprocess.run([program, "run", self.scans, "--output", archive, "--levels", "1"],
+                              capture_output=True, text=True, timeout=60, **self.unprivileged())
+
+    def test_missing_folders_are_made(self):
+        self.run_scans(archive=self.folder / "x/y/z")
+        self.assertTrue(self.dataset("a.ply", self.folder / "x/y/z").exists())
+
+    def test_a_file_in_the_way_is_named(self):
+        (self.folder / "file").write_text("")
+        for archive in ("file", "file/below"):
+            process = self.semigeo("run", self.scans, "--output", self.folder / archive, code=1)
+            self.assertIn(f"semigeo: {self.folder / archive}", process.stderr)
+            self.assertIn("directory", process.stderr)
+            self.assertNotIn("filesystem error", process.stderr)
+
+    def test_a_read_only_folder_is_named(self):
+        self.archive.mkdir(mode=0o555)
+        process = self.run_unprivileged(self.archive)
+        self.assertEqual(process.returncode, 1)
+        self.assertIn(str(self.archive), process.stderr)
+        self.assertIn("ermission", process.stderr)
+        self.assertEqual(contents(self.archive), {})
+
+    def test_a_read_only_archive_that_is_up_to_date_is_fine(self):
+        self.run_scans("--levels", 1)
+        self.archive.chmod(0o555)
+        (self.archive / "scans").chmod(0o555)
+        process = self.run_unprivileged(self.archive)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertIn("1 up to date", process.stdout)
+
+    def test_a_read_only_folder_of_datasets_fails_each_scan_by_name(self):
+        (self.archive / "scans").mkdir(parents=True)
+        (self.archive / "scans").chmod(0o555)
+        process = self.run_unprivileged(self.archive)
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("a.ply.vtkhdf", process.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,135 @@
+"""A dataset as others read it: h5py, VTKHDF's rules, the XDMF sidecar."""
+
+import json
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+import h5py
+import numpy as np
+
+from support import SemigeoTest, icosphere, joined, plane, write_ply
+
+LEVELS = 3
+RADIUS = 10.0
+
+
+class SphereDatasetTest(SemigeoTest):
+    def setUp(self):
+        super().setUp()
+        self.points, self.triangles = icosphere(4, RADIUS)
+        write_ply(self.scans / "sphere.ply", (self.points, self.triangles))
+        self.run_scans("--levels", LEVELS, "--unit", "mm")
+        self.file = h5py.File(self.dataset("sphere.ply"), "r")
+        self.addCleanup(self.file.close)
+        self.levels = [self.file[f"levels/{k:03d}"] for k in range(LEVELS + 1)]
+
+    def test_says_where_it_comes_from(self):
+        attributes = self.file.attrs
+        self.assertEqual(attributes["format"], b"semigeo-dataset")
+        self.assertEqual(attributes["creator"], b"semigeo")
+        self.assertEqual(attributes["length_unit"], b"mm")
+        self.assertEqual(attributes["complete"], 1)
+        self.assertEqual(json.loads(attributes["parameters"]),
+                         {"compression": "deflate", "length_unit": "mm", "levels": LEVELS,
+                          "step": 1.0, "surface": "curved"})
+        for name in ("input_xxh3", "digest", "job_key"):
+            self.assertEqual(len(attributes[name]), 32, name)
+
+    def test_level_zero_is_the_scan(self):
+        np.testing.assert_array_equal(self.levels[0]["points"], self.points.astype("f4"))
+        np.testing.assert_array_equal(self.levels[0]["triangles"], self.triangles)
+        np.testing.assert_array_equal(self.levels[0]["source_vertex"], np.arange(len(self.points)))
+
+    def test_curvature_is_that_of_the_sphere(self):
+        for level in self.levels:
+            # What smoothing over one step makes of a sphere: a bias of about step^2 / r^2.
+            bias = (level.attrs["step"] / RADIUS) ** 2
+            gaussian = level["gaussian_curvature"][...] * RADIUS ** 2
+            mean = level["mean_curvature"][...] * RADIUS
+            self.assertLess(abs(np.median(gaussian) - 1), 1.2 * bias)
+            self.assertLess(abs(np.median(mean) + 1), 0.6 * bias)
+            self.assertLess(np.abs(gaussian - 1).max(), 0.02)
+            self.assertLess(np.abs(mean + 1).max(), 0.01)
+            np.testing.assert_array_equal(level["patch_completeness"], 1)
+            radii = np.linalg.norm(level["points"], axis=1)
+            np.testing.assert_allclose(radii, RADIUS, rtol=1e-3)
+            outward = np.sum(level["points"] * level["normals"][...], axis=1) / radii
+            self.assertGreater(outward.min(), 0.999)
+
+    def test_scales_grow_with_the_smoothings(self):
+        scales = [level.attrs["scale"] for level in self.levels]
+        step = self.levels[0].attrs["step"]
+        np.testing.assert_allclose(scales, step * np.sqrt(np.arange(LEVELS + 1) + 1), rtol=1e-3)
+        self.assertEqual([level.attrs["iteration"] for level in self.levels],
+                         list(range(LEVELS + 1)))
+
+
+class SeveralPartsDatasetTest(SemigeoTest):
+    def setUp(self):
+        super().setUp()
+        square = plane(30)  # edges as long as the sphere's
+        mesh = joined(icosphere(3), (4.5 * square[0] + 3, square[1]))
+        write_ply(self.scans / "parts.ply", mesh)
+        self.run_scans("--levels", LEVELS)
+        self.file = h5py.File(self.dataset("parts.ply"), "r")
+        self.addCleanup(self.file.close)
+        self.levels = [self.file[f"levels/{k:03d}"] for k in range(LEVELS + 1)]
+        self.vertices, self.faces = len(mesh[0]), len(mesh[1])
+
+    def test_vtkhdf_shows_the_levels(self):
+        vtk = self.file["VTKHDF"]
+        self.assertEqual(vtk.attrs["Type"], b"PolyData")
+        self.assertEqual(list(vtk.attrs["Version"]), [2, 0])
+        names = {"Normals": "normals"} | {name: name for name in (
+            "gaussian_curvature", "mean_curvature", "patch_completeness", "part", "source_vertex")}
+        self.assertEqual(set(vtk["PointData"]), set(names))
+        steps = vtk["Steps"]
+        self.assertEqual(steps.attrs["NSteps"], LEVELS + 1)
+        np.testing.assert_array_equal(steps["Values"], [l.attrs["scale"] for l in self.levels])
+        for k, level in enumerate(self.levels):
+            rows = slice(steps["PointOffsets"][k], steps["PointOffsets"][k] + self.vertices)
+            np.testing.assert_array_equal(vtk["Points"][rows], level["points"])
+            for shown, name in names.items():
+                first = steps["PointDataOffsets"][shown][k]
+                np.testing.assert_array_equal(vtk["PointData"][shown][first:first + self.vertices],
+                                              level[name], err_msg=f"{k} {name}")
+        np.testing.assert_array_equal(vtk["Polygons/Connectivity"],
+                                      np.ravel(self.levels[0]["triangles"]))
+        np.testing.assert_array_equal(vtk["Polygons/Offsets"], 3 * np.arange(self.faces + 1))
+
+    def test_parts_and_rims_are_told(self):
+        level = self.levels[0]
+        self.assertEqual(level.attrs["parts"], 2)
+        np.testing.assert_array_equal(level["part"][...], np.arange(self.vertices) >= 642)
+        completeness = level["patch_completeness"][...]
+        np.testing.assert_array_equal(completeness[:642], 1)
+        self.assertGreater(np.sum(completeness[642:] < 1), 4 * 30)  # the rim of the square
+        self.assertGreater(np.sum(completeness[642:] == 1), 100)    # its middle
+        # All four corners, and nothing but rims, may be invalid.
+        self.assertLess(np.sum(completeness == 0), 20)
+
+    def test_the_sidecar_refers_to_what_there_is(self):
+        sidecar = self.dataset("parts.ply").with_suffix(".xdmf")
+        items = ElementTree.parse(sidecar).getroot().findall(".//DataItem")
+        self.assertGreaterEqual(len(items), 4 * (LEVELS + 1))
+        for item in items:
+            name, path = item.text.strip().split(":")
+            self.assertEqual(name, "parts.ply.vtkhdf")
+            self.assertEqual([int(n) for n in item.attrib["Dimensions"].split()],
+                             list(self.file[path].shape))
+
+
+class FarAwayDatasetTest(SemigeoTest):
+    def test_map_coordinates_keep_their_detail(self):
+        points, triangles = icosphere(3)
+        points = points + (4_500_000.25, -5_400_000.5, 812.125)
+        write_ply(self.scans / "far.ply", (points, triangles))
+        self.run_scans("--levels", 1)
+        with h5py.File(self.dataset("far.ply"), "r") as file:
+            stored = file["levels/000/points"][...] + file.attrs["origin"]
+            np.testing.assert_allclose(stored, points, rtol=0, atol=1e-6)
+            np.testing.assert_allclose(file["levels/001/mean_curvature"], -1, atol=0.03)
+
+
+if __name__ == "__main__":
+    unittest.main()

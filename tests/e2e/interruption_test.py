@@ -1,0 +1,109 @@
+"""A run that is killed at any moment leaves nothing but whole datasets under final names, and the next
+one ends with the bytes of a run that nobody disturbed."""
+
+import os
+import signal
+import subprocess
+import time
+import unittest
+
+from support import PROGRAM, TIMEOUT, SemigeoTest, contents, icosphere, partials, write_ply
+
+SCANS = 5
+
+
+class InterruptionTest(SemigeoTest):
+    def setUp(self):
+        super().setUp()
+        for i in range(SCANS):
+            write_ply(self.scans / f"{i}.ply", icosphere(5, 1 + i))
+        self.undisturbed = self.folder / "undisturbed"
+        self.run_scans(archive=self.undisturbed)
+        self.size = self.dataset("0.ply", self.undisturbed).stat().st_size
+
+    def start(self):
+        process = subprocess.Popen([str(PROGRAM), "run", str(self.scans), "--output",
+                                    str(self.archive)], stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def kill_at(self, moment):
+        """Starts a run and kills it when `moment()` holds; false if that never was seen."""
+        process = self.start()
+        deadline = time.monotonic() + TIMEOUT
+        while not moment():
+            if process.poll() is not None:
+                return False
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.0005)
+        process.kill()
+        return process.wait() == -signal.SIGKILL
+
+    def datasets(self):
+        folder = self.archive / "scans"
+        return sorted(p.name for p in folder.glob("*.vtkhdf")) if folder.exists() else []
+
+    def assert_whole(self):
+        """What has a final name is as it will ever be."""
+        wanted = contents(self.undisturbed)
+        for name in self.datasets():
+            self.assertTrue((self.archive / "scans" / name).read_bytes() == wanted[f"scans/{name}"])
+
+    def assert_goes_on(self):
+        self.assert_whole()
+        kept = len(self.datasets())
+        document = self.run_scans()
+        self.assertEqual(document["up_to_date"], kept)
+        self.assertEqual(document["done"], SCANS - kept)
+        self.assert_same_archives(self.archive, self.undisturbed)
+
+    def test_killed_as_soon_as_a_partial_file_exists(self):
+        self.assertTrue(self.kill_at(lambda: partials(self.archive)))
+        self.assertEqual(self.datasets(), [])
+        self.assertTrue(partials(self.archive))
+        self.assert_goes_on()
+
+    def test_killed_after_any_number_of_datasets(self):
+        # One archive, killed again and again: each run goes on where the last one stopped.
+        for count in range(1, SCANS):
+            self.assertTrue(self.kill_at(lambda: len(self.datasets()) >= count))
+            self.assertGreaterEqual(len(self.datasets()), count)
+            self.assertLess(len(self.datasets()), SCANS)
+            self.assert_whole()
+        self.assert_goes_on()
+
+    def test_killed_while_a_dataset_grows(self):
+        for share in (0.05, 0.5, 1.0):  # the last: while it is forced to the disk and read back
+            with self.subTest(share=share):
+                # A moment may pass between two looks; there are SCANS of them in a run.
+                for _ in range(5):
+                    if self.kill_at(lambda: max(partials(self.archive).values(), default=0) >=
+                                    share * self.size):
+                        break
+                    subprocess.run(["rm", "-r", str(self.archive)], check=True)
+                else:
+                    self.fail("the moment never came")
+                self.assert_goes_on()
+                subprocess.run(["rm", "-r", str(self.archive)], check=True)
+
+    def test_a_leftover_of_the_configuration_is_removed_too(self):
+        process = self.start()
+        process.wait(TIMEOUT)
+        # As a kill between the last dataset and the end leaves it.
+        host = os.uname().nodename
+        (self.archive / "semigeo.toml").unlink()
+        (self.archive / f".semigeo.toml.{host}.{process.pid}.partial").write_text("[ru")
+        self.run_scans()
+        self.assert_same_archives(self.archive, self.undisturbed)
+
+    def test_two_runs_at_once_do_no_harm(self):
+        processes = [self.start(), self.start()]
+        for process in processes:
+            self.assertEqual(process.wait(TIMEOUT), 0)
+        self.assert_same_archives(self.archive, self.undisturbed)
+
+
+if __name__ == "__main__":
+    unittest.main()

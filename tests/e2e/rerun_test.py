@@ -1,0 +1,94 @@
+"""What a second run does: nothing, or exactly what depends on a change; and that neither threads nor
+place nor time show in the bytes."""
+
+import os
+import shutil
+import unittest
+
+from support import SemigeoTest, icosphere, joined, plane, write_ply
+
+
+class RerunTest(SemigeoTest):
+    def setUp(self):
+        super().setUp()
+        write_ply(self.scans / "a.ply", icosphere(3))
+        write_ply(self.scans / "deep/b.ply", plane(20))
+        write_ply(self.scans / "c.ply", icosphere(2, 5))
+
+    def inode_of(self, name):
+        """A remade dataset is a new file."""
+        status = os.stat(self.dataset(name))
+        return status.st_ino, status.st_mtime_ns
+
+    def test_a_second_run_does_nothing_and_says_so(self):
+        first = self.semigeo("run", self.scans, "--output", self.archive, "--levels", 2)
+        self.assertIn("3 done, 0 up to date, 0 failed", first.stdout)
+        before = [self.inode_of(name) for name in ("a.ply", "deep__b.ply", "c.ply")]
+        second = self.semigeo("run", self.scans, "--output", self.archive, "--levels", 2)
+        self.assertIn("0 done, 3 up to date, 0 failed", second.stdout)
+        self.assertEqual(before,
+                         [self.inode_of(name) for name in ("a.ply", "deep__b.ply", "c.ply")])
+
+    def test_a_changed_scan_is_remade_alone(self):
+        self.run_scans("--levels", 2)
+        before = {name: self.inode_of(name) for name in ("a.ply", "deep__b.ply", "c.ply")}
+        write_ply(self.scans / "c.ply", icosphere(2, 6))
+        document = self.run_scans("--levels", 2)
+        self.assertEqual(self.states(document),
+                         {"a.ply": "up to date", "b.ply": "up to date", "c.ply": "done"})
+        self.assertEqual({name for name in before if before[name] != self.inode_of(name)},
+                         {"c.ply"})
+
+    def test_a_touched_scan_is_up_to_date(self):
+        self.run_scans("--levels", 2)
+        os.utime(self.scans / "a.ply")
+        os.utime(self.scans / "c.ply", (0, 0))
+        self.assertEqual(self.run_scans("--levels", 2)["up_to_date"], 3)
+
+    def test_a_changed_parameter_remakes_all(self):
+        self.run_scans("--levels", 2)
+        changes = (("--levels", 3), ("--surface", "flat"), ("--step", 1.5),
+                   ("--compression", "none"), ("--unit", "mm"))
+        for change in changes:
+            arguments = change if change[0] == "--levels" else ("--levels", 2, *change)
+            with self.subTest(change=change):
+                self.assertEqual(self.run_scans(*arguments)["done"], 3)
+                self.assertEqual(self.run_scans(*arguments)["up_to_date"], 3)
+        self.assertEqual(self.run_scans("--levels", 2)["done"], 3)
+
+    def test_a_new_scan_is_added_alone(self):
+        self.run_scans("--levels", 1)
+        write_ply(self.scans / "d.ply", icosphere(1))
+        document = self.run_scans("--levels", 1)
+        self.assertEqual((document["done"], document["up_to_date"]), (1, 3))
+
+    def test_what_failed_is_tried_again(self):
+        (self.scans / "d.ply").write_text("no ply")
+        self.assertEqual(self.run_scans("--levels", 1, code=1)["failed"], 1)
+        document = self.run_scans("--levels", 1, code=1)
+        self.assertEqual((document["up_to_date"], document["failed"]), (3, 1))
+        write_ply(self.scans / "d.ply", icosphere(1))
+        self.assertEqual(self.run_scans("--levels", 1)["done"], 1)
+
+    def test_only_content_shows_in_the_bytes(self):
+        self.run_scans("--levels", 2)
+        shutil.copytree(self.scans, self.folder / "elsewhere/copy")
+        other = self.folder / "elsewhere/archive"
+        self.semigeo("run", "copy/", "--output", "archive", "--levels", 2,
+                     cwd=self.folder / "elsewhere")
+        self.assert_same_archives(other, self.archive)
+
+    def test_every_number_of_threads_gives_the_same_bytes(self):
+        # Several chunks of every array, several blocks of vertices, a rim, several parts.
+        mesh = joined(icosphere(6), (plane(60)[0] + 3, plane(60)[1]))
+        write_ply(self.scans / "large.ply", mesh)
+        archives = []
+        for threads in (1, 2, 4):
+            archives.append(self.folder / f"threads{threads}")
+            self.run_scans("--levels", 2, "--threads", threads, archive=archives[-1])
+        for archive in archives[1:]:
+            self.assert_same_archives(archive, archives[0])
+
+
+if __name__ == "__main__":
+    unittest.main()
