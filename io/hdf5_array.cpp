@@ -10,6 +10,7 @@ namespace semigeo::io {
 namespace {
 
 constexpr std::int64_t kLargestChunk = 16 * 1024 * 1024;  // ours have 256 KiB
+constexpr unsigned kHighestDeflateLevel = 9;
 
 hid_t hdf5_type(ElementType type) {
   switch (type) {
@@ -42,8 +43,8 @@ Hdf5Handle array_properties() {
   return properties;
 }
 
-// The filters that Compression stands for, in order; nothing if they are others. Our decoder needs no
-// parameters of theirs, but other readers do: shuffle's must be the size of an element.
+// The filters that Compression stands for, in order; nothing if they are others. Our decoder needs
+// no parameters of theirs, but other readers do: shuffle's must be the size of an element.
 std::optional<Compression> compression_of(hid_t properties, ElementType type) {
   std::vector<H5Z_filter_t> filters;
   for (int i = 0; i < H5Pget_nfilters(properties); ++i) {

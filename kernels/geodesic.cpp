@@ -164,46 +164,45 @@ GeodesicLine::GeodesicLine(const GeodesicMesh& mesh, const Ray& start) : mesh_(m
 }
 
 bool GeodesicLine::advance(float length) {
-  float left = length;
-  while (ray_.at.halfedge != kNone) {
-    const float x = ray_.at.x;
-    const float y = ray_.at.y;
+  // In locals, so that one face's result reaches the next face in registers.
+  std::int32_t h = ray_.at.halfedge;
+  float x = ray_.at.x, y = ray_.at.y, dx = ray_.dx, dy = ray_.dy;
+  while (h != kNone) {
     // With the apex to the left of the ray it leaves through target -> apex, else apex -> origin.
-    const bool right = ray_.dx * (1 - y) + ray_.dy * x >= 0;
+    const bool right = dx * (1 - y) + dy * x >= 0;
     const float gap = right ? 1 - x - y : x;  // weight of the corner that is left behind
-    const float out = right ? ray_.dx + ray_.dy : -ray_.dx;  // and how fast it falls
-    const float in = right ? ray_.dx : ray_.dy;              // growth of the twin's target
-    const float distance = std::max(gap, 0.0f) / std::max(out, std::numeric_limits<float>::min());
-    if (distance > left) {
-      ray_.at.x = x + ray_.dx * left;
-      ray_.at.y = y + ray_.dy * left;
+    const float out = right ? dx + dy : -dx;  // and how fast it falls
+    const float in = right ? dx : dy;         // growth of the weight of the twin's target
+    if (gap > length * out) {
+      ray_ = {{h, x + dx * length, y + dy * length}, dx, dy};
       return true;
     }
-    left -= distance;
-    const std::int32_t h = ray_.at.halfedge;
-    const std::int32_t through = right ? next(h) : prev(h);
+    const float distance = std::max(gap, 0.0f) / std::max(out, std::numeric_limits<float>::min());
+    length -= distance;
     const float along = (right ? x : y) + in * distance;
-    if (++crossings_ > kMaxCrossings) {
-      ray_.at.halfedge = kNone;
-    } else if (along < kSnap) {
-      pass_vertex(mesh_.origin(next(through)));
-    } else if (along > 1 - kSnap) {
-      pass_vertex(mesh_.origin(through));
+    const std::int32_t through = right ? next(h) : prev(h);
+    const GeodesicFace::Edge& edge = mesh_.face(through).edge[corner_of(through)];
+    if (++crossings_ > kMaxCrossings) break;
+    if (along < kSnap || along > 1 - kSnap) {
+      const std::int32_t vertex = along < kSnap ? mesh_.origin(next(through)) : edge.origin;
+      // Theorem 7
+      ray_ = ray_from_vertex(mesh_, vertex, direction_in_space(mesh_, {{h, x, y}, dx, dy}));
+      h = ray_.at.halfedge;
+      x = ray_.at.x;
+      y = ray_.at.y;
+      dx = ray_.dx;
+      dy = ray_.dy;
     } else {
-      pass_edge(through, along, out, in);
+      // Theorem 6: the corner left behind, whose weight falls by `out`, in the neighbour's frame.
+      h = edge.twin;
+      x = along;
+      y = 0;
+      dx = in - edge.alpha * out;
+      dy = -edge.beta * out;
     }
   }
+  ray_.at.halfedge = kNone;
   return false;
-}
-
-void GeodesicLine::pass_edge(std::int32_t through, float along, float out, float in) {
-  const GeodesicFace::Edge& edge = mesh_.face(through).edge[corner_of(through)];
-  // Theorem 6: the corner left behind, whose weight falls by `out`, in the neighbour's frame.
-  ray_ = {{edge.twin, along, 0}, in - edge.alpha * out, -edge.beta * out};
-}
-
-void GeodesicLine::pass_vertex(std::int32_t vertex) {
-  ray_ = ray_from_vertex(mesh_, vertex, direction_in_space(mesh_, ray_));
 }
 
 }  // namespace semigeo::kernels

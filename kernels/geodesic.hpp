@@ -63,8 +63,8 @@ inline constexpr float kSnap = 1e-4f;
 /// A half-line that has crossed this many faces ends: the mesh is far finer here than its mean
 /// edge.
 inline constexpr int kMaxCrossings = 400;
-/// A half-line ends at a vertex with more faces than this: finding its way round the hub of a fan of
-/// 100,000 would cost as much as a whole scan.
+/// A half-line ends at a vertex with more faces than this: finding its way round the hub of a fan
+/// of 100,000 would cost as much as a whole scan.
 inline constexpr int kMaxFan = 1024;
 
 /// First half of the preparation of face f: connectivity and metric. Needs the points only.
@@ -121,9 +121,6 @@ class GeodesicLine {
   const Ray& ray() const { return ray_; }
 
  private:
-  void pass_edge(std::int32_t through, float along, float out, float in);
-  void pass_vertex(std::int32_t vertex);
-
   const GeodesicMesh& mesh_;
   Ray ray_;
   int crossings_ = 0;

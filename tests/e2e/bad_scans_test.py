@@ -8,6 +8,7 @@ import struct
 import subprocess
 import unittest
 
+import h5py
 import numpy as np
 
 from support import (PROGRAM, SemigeoTest, contents, icosphere, obj_text, partials, ply_bytes,
@@ -96,11 +97,40 @@ class DamagedDatasetTest(SemigeoTest):
         self.whole = contents(self.archive)
 
     def damage(self, name, at):
+        """Turns one bit over."""
         path = self.dataset(name)
         data = bytearray(path.read_bytes())
-        data[int(at * len(data))] ^= 0x10
+        data[at] ^= 0x10
         path.write_bytes(data)
         return path
+
+    def chunks(self, name):
+        """Name, place and size of every chunk of every array under /levels."""
+        found = []
+        with h5py.File(self.dataset(name), "r") as file:
+            def add(path, item):
+                if isinstance(item, h5py.Dataset):
+                    for i in range(item.id.get_num_chunks()):
+                        chunk = item.id.get_chunk_info(i)
+                        found.append((path, chunk.byte_offset, chunk.size))
+            file["levels"].visititems(add)
+        return found
+
+    def everything(self, name):
+        """All that h5py sees of a dataset."""
+        seen = {}
+
+        def add(path, item):
+            seen[path] = {key: np.asarray(value).tolist() for key, value in item.attrs.items()}
+            if isinstance(item, h5py.Dataset):
+                seen[path]["="] = (item.dtype.str, item.shape, item[...].tobytes())
+            else:
+                for key in item:
+                    add(f"{path}{key}/", item[key])
+
+        with h5py.File(self.dataset(name), "r") as file:
+            add("/", file)
+        return seen
 
     def test_check_passes_what_is_whole(self):
         process = self.semigeo("check", self.archive)
@@ -108,20 +138,41 @@ class DamagedDatasetTest(SemigeoTest):
         self.assertEqual(self.semigeo("check", self.dataset("a.ply")).stdout,
                          "1 checked, 0 broken\n")
 
-    def test_check_finds_one_wrong_bit_and_names_the_file(self):
-        found = 0
-        for at in np.linspace(0.02, 0.98, 25):
-            path = self.damage("b.ply", at)
-            process = subprocess.run([PROGRAM, "check", self.archive], capture_output=True,
-                                     text=True, timeout=60)
-            path.write_bytes(self.whole["scans/b.ply.vtkhdf"])
-            if process.returncode == 0:
-                continue  # a byte that means nothing: HDF5 leaves gaps
-            found += 1
-            self.assertEqual(process.returncode, 1)
+    def test_check_finds_one_wrong_bit_in_any_chunk_and_names_the_file(self):
+        chunks = self.chunks("b.ply")
+        self.assertGreaterEqual(len(chunks), 3 * 5 + 3)
+        for array, offset, size in chunks:
+            path = self.damage("b.ply", offset + size // 2)
+            process = self.semigeo("check", self.archive, code=1)
             self.assertIn(f"broken: {path}: ", process.stdout)
             self.assertIn("3 checked, 1 broken", process.stdout)
-        self.assertGreaterEqual(found, 20)
+            path.write_bytes(self.whole["scans/b.ply.vtkhdf"])
+
+    def test_what_check_passes_says_to_others_what_it_said_before(self):
+        # Not every byte of an HDF5 file means something; those that do must be found.
+        wanted = self.everything("b.ply")
+        found = 0
+        size = len(self.whole["scans/b.ply.vtkhdf"])
+        for at in range(size // 80, size, size // 40):
+            path = self.damage("b.ply", at)
+            process = subprocess.run([PROGRAM, "check", path], capture_output=True, timeout=60)
+            if process.returncode == 0:
+                self.assertEqual(self.everything("b.ply"), wanted, f"byte {at}")
+            else:
+                self.assertEqual(process.returncode, 1)
+                found += 1
+            path.write_bytes(self.whole["scans/b.ply.vtkhdf"])
+        self.assertGreater(found, 3)
+
+    def test_check_finds_what_only_other_readers_would_stumble_over(self):
+        for filter, parameter, wrong in ((b"shuffle\0", 4, 2), (b"deflate\0", 1, 33)):
+            path = self.dataset("b.ply")
+            whole = self.whole["scans/b.ply.vtkhdf"]
+            before, after = (filter + struct.pack("<I", value) for value in (parameter, wrong))
+            self.assertIn(before, whole)
+            path.write_bytes(whole.replace(before, after, 1))
+            process = self.semigeo("check", self.archive, code=1)
+            self.assertIn("filters", process.stdout)
 
     def test_a_cut_or_emptied_dataset_is_found_and_remade(self):
         for size in (0, 100, -1):
@@ -135,7 +186,8 @@ class DamagedDatasetTest(SemigeoTest):
                 self.assertEqual(contents(self.archive), self.whole)
 
     def test_a_damaged_dataset_is_remade_once_it_is_removed(self):
-        path = self.damage("b.ply", 0.5)
+        _, offset, size = self.chunks("b.ply")[0]
+        path = self.damage("b.ply", offset + size // 2)
         self.semigeo("check", self.archive, code=1)
         path.unlink()
         self.assertEqual(self.run_scans("--levels", 2)["done"], 1)
@@ -195,11 +247,15 @@ class OutputFolderTest(SemigeoTest):
         self.assertIn("1 up to date", process.stdout)
 
     def test_a_read_only_folder_of_datasets_fails_each_scan_by_name(self):
-        (self.archive / "scans").mkdir(parents=True)
+        self.run_scans("--levels", 1)
+        (self.archive / "scans/a.ply.vtkhdf").unlink()
         (self.archive / "scans").chmod(0o555)
+        self.archive.chmod(0o555)
         process = self.run_unprivileged(self.archive)
         self.assertEqual(process.returncode, 1)
+        self.assertIn("failed: ", process.stdout)
         self.assertIn("a.ply.vtkhdf", process.stdout)
+        self.assertIn("0 done, 0 up to date, 1 failed", process.stdout)
 
 
 if __name__ == "__main__":

@@ -2,10 +2,13 @@
 one ends with the bytes of a run that nobody disturbed."""
 
 import os
+import shutil
 import signal
 import subprocess
+import tempfile
 import time
 import unittest
+from pathlib import Path
 
 from support import PROGRAM, TIMEOUT, SemigeoTest, contents, icosphere, partials, write_ply
 
@@ -13,12 +16,20 @@ SCANS = 5
 
 
 class InterruptionTest(SemigeoTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        folder = Path(tempfile.mkdtemp(prefix="semigeo-e2e-"))
+        cls.addClassCleanup(shutil.rmtree, folder)
+        cls.shared_scans, cls.undisturbed = folder / "scans", folder / "archive"
+        for i in range(SCANS):
+            write_ply(cls.shared_scans / f"{i}.ply", icosphere(5, 1 + i))
+        subprocess.run([PROGRAM, "run", cls.shared_scans, "--output", cls.undisturbed], check=True,
+                       stdout=subprocess.DEVNULL, timeout=TIMEOUT)
+
     def setUp(self):
         super().setUp()
-        for i in range(SCANS):
-            write_ply(self.scans / f"{i}.ply", icosphere(5, 1 + i))
-        self.undisturbed = self.folder / "undisturbed"
-        self.run_scans(archive=self.undisturbed)
+        self.scans = self.shared_scans
         self.size = self.dataset("0.ply", self.undisturbed).stat().st_size
 
     def start(self):
@@ -82,11 +93,11 @@ class InterruptionTest(SemigeoTest):
                     if self.kill_at(lambda: max(partials(self.archive).values(), default=0) >=
                                     share * self.size):
                         break
-                    subprocess.run(["rm", "-r", str(self.archive)], check=True)
+                    shutil.rmtree(self.archive)
                 else:
                     self.fail("the moment never came")
                 self.assert_goes_on()
-                subprocess.run(["rm", "-r", str(self.archive)], check=True)
+                shutil.rmtree(self.archive)
 
     def test_a_leftover_of_the_configuration_is_removed_too(self):
         process = self.start()

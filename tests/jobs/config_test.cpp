@@ -18,8 +18,9 @@ TEST(ConfigTest, ParametersAreJsonWithSortedKeys) {
                                    .step = 0.1,
                                    .compression = io::Compression::none,
                                    .length_unit = "m\"m"};
-  EXPECT_EQ(to_json(other),
-            R"({"compression":"none","length_unit":"m\"m","levels":3,"step":0.1,"surface":"flat"})");
+  EXPECT_EQ(
+      to_json(other),
+      R"({"compression":"none","length_unit":"m\"m","levels":3,"step":0.1,"surface":"flat"})");
 }
 
 TEST(ConfigTest, EveryParameterShows) {

@@ -95,8 +95,8 @@ TEST(EvolvingSurfaceTest, APlaneStaysAPlane) {
   }
 }
 
-// Every pass shrinks it by about step^2 / r; the rescaling takes that back, so each level is the same
-// sphere, and its curvature keeps the one bias that one pass has.
+// Every pass shrinks it by about step^2 / r; the rescaling takes that back, so each level is the
+// same sphere, and its curvature keeps the one bias that one pass has.
 TEST(EvolvingSurfaceTest, ASphereStaysASphere) {
   const EvolvedMesh evolved = evolve_mesh(shapes::icosphere(4, 2), 8);
   const double step = evolved.levels[0].step / 2;  // for radius 1
@@ -192,8 +192,7 @@ TEST(EvolvingSurfaceTest, StaysInItsConvexHullButForTheRescaling_Theorem2) {
   std::vector<Vector3d> before, smoothed;
   for (std::int32_t v = 0; v < prepared.surface.vertex_count(); ++v) {
     before.push_back(prepared.points[v].head<3>().cast<double>());
-    smoothed.push_back(
-        kernels::evolve_vertex(prepared.sampled(), v, step).position.cast<double>());
+    smoothed.push_back(kernels::evolve_vertex(prepared.sampled(), v, step).position.cast<double>());
   }
   for (const Vector3d& direction : shapes::icosphere(2).points)
     EXPECT_LT(reach(smoothed, direction), reach(before, direction)) << direction.transpose();
@@ -217,10 +216,17 @@ TEST(EvolvingSurfaceTest, StaysInItsConvexHullButForTheRescaling_Theorem2) {
     EXPECT_LT((centre + factor * (smoothed[v] - centre) - evolved.point(1, order[v])).norm(), 2e-6);
 }
 
+double mean_edge_length(const TriangleMesh& mesh) {
+  return kernels::mean_edge_length(kernels::build_surface(TriangleMesh(mesh)).surface);
+}
+
+// Their steps are one, so parts are as if alone only when alone they would have the same step.
 TEST(EvolvingSurfaceTest, PartsEvolveIndependently) {
   const TriangleMesh torus = rough_torus();
-  TriangleMesh other = rough_torus();
-  for (auto& p : other.points) p = Vector3d(-p.y(), p.x(), p.z());  // the same mean edge length
+  TriangleMesh other = shapes::icosphere(3);  // shrinks by another factor
+  shapes::add_noise(other, 0.01, 2);
+  const double factor = mean_edge_length(torus) / mean_edge_length(other);
+  for (auto& p : other.points) p *= factor;
   const Vector3d away(0, 0, 2);
   const EvolvedMesh both = evolve_mesh(joined(torus, moved(other, away)), 5);
   ASSERT_EQ(both.surface.part_count, 2);
@@ -228,16 +234,16 @@ TEST(EvolvingSurfaceTest, PartsEvolveIndependently) {
   const EvolvedMesh other_alone = evolve_mesh(moved(other, away), 5);
   for (std::size_t k = 0; k <= 5; ++k) {
     const std::size_t n = alone.levels[k].points.size();
-    EXPECT_NEAR(both.levels[k].scale, alone.levels[k].scale, 1e-9);
+    EXPECT_NEAR(both.levels[k].scale, alone.levels[k].scale, 1e-6);
     std::vector<double> first, second;
-    for (std::size_t v = 0; v < n; ++v) {
+    for (std::size_t v = 0; v < n; ++v)
       first.push_back((both.point(k, v) - alone.point(k, v)).norm());
+    for (std::size_t v = 0; v < other.points.size(); ++v)
       second.push_back((both.point(k, n + v) - other_alone.point(k, v)).norm());
-    }
-    EXPECT_LT(*std::ranges::max_element(first), 1e-4) << "level " << k;
-    EXPECT_LT(*std::ranges::max_element(second), 1e-4) << "level " << k;
-    EXPECT_LT(median(std::move(first)), 1e-6) << "level " << k;
-    EXPECT_LT(median(std::move(second)), 1e-6) << "level " << k;
+    EXPECT_LT(*std::ranges::max_element(first), 5e-4) << "level " << k;
+    EXPECT_LT(*std::ranges::max_element(second), 5e-4) << "level " << k;
+    EXPECT_LT(median(std::move(first)), 5e-6) << "level " << k;
+    EXPECT_LT(median(std::move(second)), 5e-6) << "level " << k;
   }
 }
 
@@ -313,8 +319,8 @@ TEST(EvolvingSurfaceTest, EveryNumberOfThreadsGivesTheSame) {
 TEST(EvolvingSurfaceTest, TinyPartsStayFiniteAndInPlace) {
   const TriangleMesh triangle = {{{0, 3, 0}, {0.001, 3, 0}, {0, 3.001, 0}}, {{0, 1, 2}}};
   const TriangleMesh needle = {{{0, -3, 0}, {0.5, -3, 0}, {1, -3, 0}}, {{0, 1, 2}}};
-  const TriangleMesh mesh = joined(
-      joined(joined(rough_torus(), triangle), tetrahedron(1e-4, {3, 0, 0})), needle);
+  const TriangleMesh mesh =
+      joined(joined(joined(rough_torus(), triangle), tetrahedron(1e-4, {3, 0, 0})), needle);
   for (const bool curved : {true, false}) {
     const EvolvedMesh evolved = evolve_mesh(mesh, 20, {.curved = curved});
     ASSERT_EQ(evolved.surface.part_count, 4);

@@ -38,7 +38,9 @@ class LocalExecutorTest : public testing::Test {
     for (const JobOutcome& outcome : run()) result.push_back(outcome.state);
     return result;
   }
-  void add(const char* name, const std::string& text) { std::ofstream(folder_ / "in" / name) << text; }
+  void add(const char* name, const std::string& text) {
+    std::ofstream(folder_ / "in" / name) << text;
+  }
   void add(const char* name, const kernels::TriangleMesh& mesh) {
     tests::write_obj(folder_ / "in" / name, mesh);
   }
@@ -109,9 +111,9 @@ TEST_F(LocalExecutorTest, RemovesWhatAKilledRunLeft) {
   fs::create_directories(config_.archive / "scans");
   char host[256] = {};
   gethostname(host, sizeof host - 1);
-  const fs::path stale = config_.archive / "scans" /
-                         (".a.obj.vtkhdf." + std::string(host) + "." +
-                          std::to_string(dead_process()) + ".partial");
+  const fs::path stale =
+      config_.archive / "scans" /
+      (".a.obj.vtkhdf." + std::string(host) + "." + std::to_string(dead_process()) + ".partial");
   const fs::path foreign = config_.archive / "scans/.a.obj.vtkhdf.another-host.1.partial";
   for (const fs::path& file : {stale, foreign}) std::ofstream(file) << "half a dataset";
   EXPECT_EQ(states(), States{kDone});

@@ -54,8 +54,7 @@ TEST_F(FindScansTest, SearchesFoldersForScansOfEveryFormat) {
 TEST_F(FindScansTest, TheOrderIsThatOfNamesWhateverTheFileSystemSays) {
   for (const char* file : {"in/z.ply", "in/b/z.ply", "in/m.ply", "in/b/a.ply", "in/a.ply"})
     add(file);
-  EXPECT_EQ(names({folder_ / "in"}),
-            (Names{"a.ply", "b__a.ply", "b__z.ply", "m.ply", "z.ply"}));
+  EXPECT_EQ(names({folder_ / "in"}), (Names{"a.ply", "b__a.ply", "b__z.ply", "m.ply", "z.ply"}));
 }
 
 TEST_F(FindScansTest, PassesOverHiddenThingsAndTheArchive) {
@@ -99,8 +98,8 @@ TEST_F(FindScansTest, LinksThatLeadNowhereDoNotHideTheOthers) {
 TEST_F(FindScansTest, AScanNamedTwiceIsOneScan) {
   add("in/a.ply");
   add("in/b/c.ply");
-  EXPECT_EQ(names({folder_ / "in", folder_ / "in/a.ply", folder_ / "in/b", folder_ / "in/b/../a.ply",
-                   folder_ / "in"}),
+  EXPECT_EQ(names({folder_ / "in", folder_ / "in/a.ply", folder_ / "in/b",
+                   folder_ / "in/b/../a.ply", folder_ / "in"}),
             (Names{"a.ply", "b__c.ply"}));
 }
 
@@ -111,7 +110,7 @@ TEST_F(FindScansTest, TheWayAFolderIsWrittenDoesNotMatter) {
 }
 
 TEST_F(FindScansTest, NamesAreSafeWhateverThePath) {
-  const std::string parts[] = {"Krug Nº 7",  "spaces in it", "a..b", "..hidden..", "new\nline",
+  const std::string parts[] = {"Krug Nº 7",   "spaces in it", "a..b", "..hidden..", "new\nline",
                                "back\\slash", "quote'\"",     "-x",   "%41",        "\xff\xfe",
                                "__",          "a__b",         "*?",   "~",          "日本"};
   for (const auto& part : parts) add("in/d/" + part + ".ply");

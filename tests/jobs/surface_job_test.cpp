@@ -101,8 +101,7 @@ TEST_F(SurfaceJobTest, DatasetOfASphere) {
     EXPECT_GT(level.scale, previous);
     previous = level.scale;
     for (const float h : dataset.read_floats(k, "mean_curvature")) EXPECT_NEAR(h, -0.1, 0.003);
-    for (const float c : dataset.read_floats(k, "gaussian_curvature"))
-      EXPECT_NEAR(c, 0.01, 0.0006);
+    for (const float c : dataset.read_floats(k, "gaussian_curvature")) EXPECT_NEAR(c, 0.01, 0.0006);
     for (const float c : dataset.read_floats(k, "patch_completeness")) EXPECT_EQ(c, 1);
   }
   EXPECT_TRUE(fs::exists(folder_ / "scan.xdmf"));
