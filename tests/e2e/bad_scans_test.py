@@ -164,6 +164,25 @@ class DamagedDatasetTest(SemigeoTest):
             path.write_bytes(self.whole["scans/b.ply.vtkhdf"])
         self.assertGreater(found, 3)
 
+    def test_check_finds_what_was_changed_with_all_checksums_right(self):
+        def value(file):
+            file["levels/001/gaussian_curvature"][3] += 1
+
+        def attribute(file):
+            file["levels/001"].attrs.modify("scale", 1.01 * file["levels/001"].attrs["scale"])
+
+        def addition(file):
+            file["levels/001"].attrs["remark"] = "mine"
+
+        for change in (value, attribute, addition):
+            with self.subTest(change=change.__name__):
+                path = self.dataset("b.ply")
+                with h5py.File(path, "r+") as file:
+                    change(file)
+                process = self.semigeo("check", self.archive, code=1)
+                self.assertIn(f"broken: {path}: ", process.stdout)
+                path.write_bytes(self.whole["scans/b.ply.vtkhdf"])
+
     def test_check_finds_what_only_other_readers_would_stumble_over(self):
         for filter, parameter, wrong in ((b"shuffle\0", 4, 2), (b"deflate\0", 1, 33)):
             path = self.dataset("b.ply")

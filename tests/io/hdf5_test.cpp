@@ -13,7 +13,9 @@
 
 // HDF5 forgets the memory of a file whose closing failed, as the tests with a full disk provoke.
 extern "C" const char* __lsan_default_suppressions();  // NOLINT(bugprone-reserved-identifier)
-extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5"; }
+extern "C" const char* __lsan_default_suppressions() {
+  return "leak:libhdf5";
+}
 
 namespace semigeo::io {
 namespace {

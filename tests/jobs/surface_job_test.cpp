@@ -109,7 +109,7 @@ TEST_F(SurfaceJobTest, DatasetOfASphere) {
 
 // Inside, vertices and faces are sorted for locality; nothing of that shows.
 TEST_F(SurfaceJobTest, VerticesAndTrianglesKeepTheOrderOfTheFile) {
-  TriangleMesh mesh = shapes::torus(1, 0.4, 30, 20, 0.3);
+  TriangleMesh mesh = shapes::torus(1, 0.4, 60, 40, 0.3);
   std::ranges::reverse(mesh.triangles);
   const auto first = static_cast<std::int32_t>(mesh.points.size());
   for (const auto& p : shapes::icosphere(1).points) mesh.points.push_back(0.1 * p);
@@ -136,10 +136,20 @@ TEST_F(SurfaceJobTest, VerticesAndTrianglesKeepTheOrderOfTheFile) {
     const auto part = dataset.read_integers(k, "part");
     for (std::size_t v = 0; v < part.size(); ++v)
       ASSERT_EQ(part[v], v < static_cast<std::size_t>(first) ? 0 : 1);
-    // Each vertex moved by less than an edge, so fields are in that order too.
+    // Fields too: each is near what the torus has at that vertex.
     const auto moved = dataset.read_floats(k, "points");
-    for (std::size_t v = 0; v < mesh.points.size(); ++v)
-      ASSERT_NEAR(moved[3 * v], mesh.points[v].x(), 0.1);
+    const auto normals = dataset.read_floats(k, "normals");
+    const auto gaussian = dataset.read_floats(k, "gaussian_curvature");
+    const auto mean = dataset.read_floats(k, "mean_curvature");
+    for (std::size_t v = 0; v < static_cast<std::size_t>(first); ++v) {
+      const Eigen::Vector3d& p = mesh.points[v];
+      const double ring = std::hypot(p.x(), p.y());
+      const double cosine = (ring - 1) / 0.4;
+      ASSERT_NEAR(moved[3 * v], p.x(), 0.1);
+      ASSERT_NEAR(normals[3 * v + 2], p.z() / 0.4, 0.2);
+      ASSERT_NEAR(gaussian[v], cosine / (0.4 * ring), 1);         // from -4.2 to 1.8
+      ASSERT_NEAR(mean[v], -(1 / 0.4 + cosine / ring) / 2, 0.4);  // from -0.4 to -1.6
+    }
   }
 }
 
