@@ -6,12 +6,14 @@
 
 namespace semigeo::io {
 
-/// What io throws: one sentence that names the file, the place in it, what was wrong and what to do.
+/// What io throws: one sentence that names the file, the place in it, what was wrong and what to
+/// do.
 class Error : public std::runtime_error {
  public:
   /// `place` is a line, byte, or dataset ("line 12", "byte 4096", "/levels/000/points"; may be
   /// empty); `remedy` is what the reader of the message can do (may be empty).
-  Error(std::filesystem::path file, std::string place, std::string problem, std::string remedy = {});
+  Error(std::filesystem::path file, std::string place, std::string problem,
+        std::string remedy = {});
 
   const std::filesystem::path& file() const { return file_; }
   const std::string& place() const { return place_; }
