@@ -44,6 +44,7 @@ EvolvingSurface::EvolvingSurface(kernels::Surface surface, const EvolutionOption
   const double mean = kernels::mean_edge_length(surface_);
   if (mean > 0) unit_ = std::exp2(std::round(std::log2(mean)));
   mean_edge_length_ = mean / unit_;
+  step_ = options_.step_factor * mean_edge_length_;
 
   points_.resize(surface_.points.size());
   for (std::size_t v = 0; v < points_.size(); ++v) {
@@ -107,11 +108,12 @@ void EvolvingSurface::prepare_faces() {
 /// Angle-weighted normals are first-order on uneven meshes; those of the convolved surface are far
 /// better, and later levels get them for nothing. Only level 0 needs a pass of its own.
 void EvolvingSurface::sharpen_normals() {
-  const auto step = static_cast<float>(options_.step_factor * mean_edge_length_);
   const kernels::SampledSurface surface = sampled();
   context_.workers.for_blocks(vertex_count(), kVertexBlock, [&](IndexRange range) {
     for (auto v = range.begin; v < range.end; ++v)
-      next_normals_[v] = kernels::evolve_vertex(surface, static_cast<std::int32_t>(v), step).normal;
+      next_normals_[v] = kernels::evolve_vertex(surface, static_cast<std::int32_t>(v),
+                                                static_cast<float>(step_))
+                             .normal;
   });
   normals_.swap(next_normals_);
   prepare_faces();
@@ -125,9 +127,8 @@ LevelFields EvolvingSurface::advance(bool move) {
   fields.gaussian_curvature.resize(n);
   fields.mean_curvature.resize(n);
   fields.patch_completeness.resize(n);
-  const double step = options_.step_factor * mean_edge_length_;
-  fields.step = step * unit_;
-  fields.scale = std::sqrt(variance_ + step * step) * unit_;
+  fields.step = step_ * unit_;
+  fields.scale = std::sqrt(variance_ + step_ * step_) * unit_;
   fields.mean_edge_length = mean_edge_length_ * unit_;
 
   const kernels::SampledSurface surface = sampled();
@@ -135,7 +136,7 @@ LevelFields EvolvingSurface::advance(bool move) {
   context_.workers.for_blocks(n, kVertexBlock, [&](IndexRange range) {
     for (auto v = range.begin; v < range.end; ++v) {
       const kernels::EvolvedVertex e =
-          kernels::evolve_vertex(surface, static_cast<std::int32_t>(v), static_cast<float>(step));
+          kernels::evolve_vertex(surface, static_cast<std::int32_t>(v), static_cast<float>(step_));
       fields.points[v] = points_[v].head<3>() * static_cast<float>(unit_);
       fields.gaussian_curvature[v] = e.gaussian_curvature * per_length * per_length;
       fields.mean_curvature[v] = e.mean_curvature * per_length;
@@ -149,7 +150,7 @@ LevelFields EvolvingSurface::advance(bool move) {
 
   points_.swap(next_points_);
   normals_.swap(next_normals_);
-  variance_ += kernels::gaussian_filters().variance * step * step;
+  variance_ += kernels::gaussian_filters().variance * step_ * step_;
   mean_edge_length_ = restore_size();
   if (!options_.curved) angle_weighted_normals();
   prepare_faces();

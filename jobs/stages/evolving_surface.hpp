@@ -25,7 +25,7 @@ struct LevelFields {
 
 struct EvolutionOptions {
   bool curved = true;      ///< sample quadratic faces; else flat ones, as the thesis does
-  double step_factor = 1;  ///< sample distance in mean edge lengths of the level
+  double step_factor = 1;  ///< sample distance in mean edge lengths of level 0
 };
 
 /// Evolves a surface level by level on all workers: kernels for one vertex go in, ranges of
@@ -68,6 +68,7 @@ class EvolvingSurface {
   std::vector<double> part_edge_length_;  ///< of level 0
   double unit_ = 1;                       ///< scan units per internal unit
   double mean_edge_length_ = 0;           ///< internal units
+  double step_ = 0;                       ///< sample distance, internal units
   double variance_ = 0;                   ///< of the smoothing so far, internal units^2
 
   std::vector<Eigen::Vector4f> points_;
