@@ -16,18 +16,19 @@ inline constexpr float kMinTangentArea = 0.1f;
 
 /// What one patch tells of its vertex: the curvature of this level, and the next level's place.
 struct EvolvedVertex {
-  Eigen::Vector3f position;  ///< smoothed, same frame and units as the points
-  Eigen::Vector3f normal;    ///< unit, of the smoothed surface
-  float gaussian_curvature;  ///< length^-2, 0 if invalid
-  float mean_curvature;      ///< length^-1, 0 if invalid
-  float patch_completeness;  ///< 1 = whole patch; 0 = invalid
+  Eigen::Vector3f position;         ///< smoothed, same frame and units as the points
+  Eigen::Vector3f smoothed_normal;  ///< unit, of the smoothed surface
+  Eigen::Vector3f normal;           ///< unit, of the surface that K and H belong to
+  float gaussian_curvature;         ///< length^-2, 0 if invalid
+  float mean_curvature;             ///< length^-1, 0 if invalid
+  float patch_completeness;         ///< 1 = whole patch; 0 = invalid
 };
 
-/// Traces the patch of vertex v once and draws everything from it: K and H, whose scale is
-/// sqrt(variance of this level + step^2); the position on the next level; and the normal there.
-/// An invalid vertex still moves as far as its samples say, but keeps its normal. All results are
-/// finite.
-/// Source: thesis 5.3 - 5.6. Differs: on curved faces K and H come from the full fundamental forms.
+/// Traces the patch of vertex v once and draws everything from it: K and H, the position on the
+/// next level, and the normal there. An invalid vertex still moves as far as its samples say, but
+/// keeps its normal. All results are finite. Source: thesis 5.3 - 5.6. Differs: on curved faces K
+/// and H are those of the surface itself, from the full fundamental forms; on flat ones, as in the
+/// thesis, those of the smoothed surface.
 EvolvedVertex evolve_vertex(const SampledSurface& surface, std::int32_t v, float step);
 
 }  // namespace semigeo::kernels

@@ -18,6 +18,9 @@ constexpr std::int64_t kFaceBlock = 8192;
 /// A part that shrank more than this in one pass is no surface at this step any more; restoring it
 /// in full would only magnify rounding.
 constexpr double kMaxRestoration = 8;
+/// Further passes for the normals of vertices with truncated patches: errors along a rim feed on
+/// each other, and after two have settled.
+constexpr int kRimPasses = 2;
 
 }  // namespace
 
@@ -105,17 +108,41 @@ void EvolvingSurface::prepare_faces() {
   });
 }
 
-/// Angle-weighted normals are first-order on uneven meshes; those of the convolved surface are far
-/// better, and later levels get them for nothing. Only level 0 needs a pass of its own.
+/// Angle-weighted normals are first-order on uneven meshes; those of the fitted surface are far
+/// better, and later levels get theirs for nothing. Only level 0 needs a pass of its own; along
+/// rims, where a patch leans on fewer normals, two more.
 void EvolvingSurface::sharpen_normals() {
+  const std::int64_t n = vertex_count();
+  std::vector<std::uint8_t> truncated(n);
+  sharpen(
+      n, [&](std::int64_t i) { return static_cast<std::int32_t>(i); }, truncated);
+  std::vector<std::int32_t> rim;
+  for (std::int64_t v = 0; v < n; ++v)
+    if (truncated[v] != 0) rim.push_back(static_cast<std::int32_t>(v));
+  for (int pass = 0; pass < kRimPasses && !rim.empty(); ++pass)
+    sharpen(
+        static_cast<std::int64_t>(rim.size()), [&](std::int64_t i) { return rim[i]; }, truncated);
+}
+
+/// Gives `count` vertices the normals of the surface that their patches fit.
+template <typename VertexAt>
+void EvolvingSurface::sharpen(std::int64_t count, const VertexAt& vertex_at,
+                              std::vector<std::uint8_t>& truncated) {
   const kernels::SampledSurface surface = sampled();
-  context_.workers.for_blocks(vertex_count(), kVertexBlock, [&](IndexRange range) {
-    for (auto v = range.begin; v < range.end; ++v)
-      next_normals_[v] = kernels::evolve_vertex(surface, static_cast<std::int32_t>(v),
-                                                static_cast<float>(step_))
-                             .normal;
+  context_.workers.for_blocks(count, kVertexBlock, [&](IndexRange range) {
+    for (auto i = range.begin; i < range.end; ++i) {
+      const std::int32_t v = vertex_at(i);
+      const auto e = kernels::evolve_vertex(surface, v, static_cast<float>(step_));
+      next_normals_[v] = e.normal;
+      truncated[v] = e.patch_completeness > 0 && e.patch_completeness < 1;
+    }
   });
-  normals_.swap(next_normals_);
+  context_.workers.for_blocks(count, kFaceBlock, [&](IndexRange range) {
+    for (auto i = range.begin; i < range.end; ++i) {
+      const std::int32_t v = vertex_at(i);
+      normals_[v] = next_normals_[v];
+    }
+  });
   prepare_faces();
 }
 
@@ -142,7 +169,7 @@ LevelFields EvolvingSurface::advance(bool move) {
       fields.mean_curvature[v] = e.mean_curvature * per_length;
       fields.patch_completeness[v] = e.patch_completeness;
       next_points_[v] << e.position, 0.0f;
-      next_normals_[v] = e.normal;
+      next_normals_[v] = e.smoothed_normal;
     }
     context_.observer.worked(range.end - range.begin);
   });

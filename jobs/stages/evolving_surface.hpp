@@ -58,6 +58,8 @@ class EvolvingSurface {
   void prepare_faces();
   void angle_weighted_normals();
   void sharpen_normals();
+  template <typename VertexAt>
+  void sharpen(std::int64_t count, const VertexAt& vertex_at, std::vector<std::uint8_t>& truncated);
   std::vector<PartMeasure> measure_parts() const;
   double restore_size();
 

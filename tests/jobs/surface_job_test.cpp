@@ -96,12 +96,12 @@ TEST_F(SurfaceJobTest, DatasetOfASphere) {
     EXPECT_EQ(level.triangles, 1280);
     EXPECT_EQ(level.parts, 1);
     EXPECT_NEAR(level.mean_edge_length, 1.5, 0.1);
-    EXPECT_EQ(level.step, level.mean_edge_length);
+    EXPECT_EQ(level.step, dataset.level(0).mean_edge_length);
     EXPECT_NEAR(level.scale, level.step * std::sqrt(k + 1.0), 2e-3 * level.step);
     EXPECT_GT(level.scale, previous);
     previous = level.scale;
-    for (const float h : dataset.read_floats(k, "mean_curvature")) EXPECT_NEAR(h, -0.1, 0.003);
-    for (const float c : dataset.read_floats(k, "gaussian_curvature")) EXPECT_NEAR(c, 0.01, 0.0006);
+    for (const float h : dataset.read_floats(k, "mean_curvature")) EXPECT_NEAR(h, -0.1, 0.0005);
+    for (const float c : dataset.read_floats(k, "gaussian_curvature")) EXPECT_NEAR(c, 0.01, 0.0001);
     for (const float c : dataset.read_floats(k, "patch_completeness")) EXPECT_EQ(c, 1);
   }
   EXPECT_TRUE(fs::exists(folder_ / "scan.xdmf"));
