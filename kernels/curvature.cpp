@@ -35,4 +35,28 @@ Curvature curvature_semigeodesic(const PatchDerivatives& d) {
           n};
 }
 
+PrincipalCurvatures principal_curvatures(const PatchDerivatives& d) {
+  const float e = d.ru.squaredNorm();
+  const Eigen::Vector3f cross = d.ru.cross(d.rv);
+  const float area = cross.norm();
+  if (!(area > 0)) return {};
+  const Eigen::Vector3f n = cross / area;
+  const Eigen::Vector3f e1 = d.ru / std::sqrt(e);
+  const Eigen::Vector3f e2 = n.cross(e1);
+  // e1 = P_u / sqrt(E); e2 = (P_v - F/E P_u) sqrt(E) / area.
+  const float shear = d.ru.dot(d.rv) / e;
+  const float l = d.ruu.dot(n);
+  const float m = d.ruv.dot(n);
+  const float nn = d.rvv.dot(n);
+  const float h11 = l / e;
+  const float h12 = (m - shear * l) / area;
+  const float h22 = (nn - 2 * shear * m + shear * shear * l) * e / (area * area);
+  const float mean = (h11 + h22) / 2;
+  const float half = (h11 - h22) / 2;
+  const float radius = std::sqrt(half * half + h12 * h12);
+  const float angle = std::atan2(h12, half) / 2;
+  const Eigen::Vector3f first = std::cos(angle) * e1 + std::sin(angle) * e2;
+  return {mean + radius, mean - radius, first, n.cross(first)};
+}
+
 }  // namespace semigeo::kernels

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "kernels/curvature.hpp"
 #include "kernels/patch.hpp"
 
 namespace semigeo::kernels {
@@ -14,6 +15,16 @@ inline constexpr float kMinCompleteness = 0.25f;
 /// itself: a sphere as small as the step has 0.37. Such a vertex is invalid too.
 inline constexpr float kMinTangentArea = 0.1f;
 
+enum class Coordinates { semigeodesic, polar };
+
+/// How a vertex' patch is laid.
+struct PatchLayout {
+  float step = 1;                                       ///< sample distance, units of points
+  Coordinates coordinates = Coordinates::semigeodesic;  ///< thesis 4.1.2 or 4.1.3
+  std::int32_t first = kNone;  ///< half-edge from the vertex; kNone: `first_edge`
+  bool principal = false;      ///< principal curvatures as well
+};
+
 /// What one patch tells of its vertex: the curvature of this level, and the next level's place.
 struct EvolvedVertex {
   Eigen::Vector3f position;         ///< smoothed, same frame and units as the points
@@ -22,6 +33,7 @@ struct EvolvedVertex {
   float gaussian_curvature;         ///< length^-2, 0 if invalid
   float mean_curvature;             ///< length^-1, 0 if invalid
   float patch_completeness;         ///< 1 = whole patch; 0 = invalid
+  PrincipalCurvatures principal;    ///< all zero if invalid or not asked for
 };
 
 /// Traces the patch of vertex v once and draws everything from it: K and H, the position on the
@@ -29,6 +41,7 @@ struct EvolvedVertex {
 /// keeps its normal. All results are finite. Source: thesis 5.3 - 5.6. Differs: on curved faces K
 /// and H are those of the surface itself, from the full fundamental forms; on flat ones, as in the
 /// thesis, those of the smoothed surface.
-EvolvedVertex evolve_vertex(const SampledSurface& surface, std::int32_t v, float step);
+EvolvedVertex evolve_vertex(const SampledSurface& surface, std::int32_t v,
+                            const PatchLayout& layout);
 
 }  // namespace semigeo::kernels

@@ -182,7 +182,7 @@ bool GeodesicLine::advance(float length) {
     const float along = (right ? x : y) + in * distance;
     const std::int32_t through = right ? next(h) : prev(h);
     const GeodesicFace::Edge& edge = mesh_.face(through).edge[corner_of(through)];
-    if (++crossings_ > kMaxCrossings) break;
+    if (++crossings_ > mesh_.max_crossings) break;
     if (along < kSnap || along > 1 - kSnap) {
       const std::int32_t vertex = along < kSnap ? mesh_.origin(next(through)) : edge.origin;
       // Theorem 7

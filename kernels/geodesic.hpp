@@ -10,6 +10,16 @@
 
 namespace semigeo::kernels {
 
+/// A point nearer to a corner than this, in barycentric coordinates, is moved onto it
+/// (thesis 5.2.3).
+inline constexpr float kSnap = 1e-4f;
+/// A half-line that has crossed this many faces ends, unless its mesh says otherwise: the mesh is
+/// far finer here than its mean edge.
+inline constexpr int kMaxCrossings = 400;
+/// A half-line ends at a vertex with more faces than this: finding its way round the hub of a fan
+/// of 100,000 would cost as much as a whole scan.
+inline constexpr int kMaxFan = 1024;
+
 /// What a geodesic needs to know of one face, in one cache line. A point in the face is written in
 /// the frame of one of its half-edges h: origin(h) + x (target(h) - origin(h)) + y (apex -
 /// origin(h)), where the apex is the third corner; a direction likewise.
@@ -50,22 +60,13 @@ struct GeodesicMesh {
   std::span<const std::int32_t> outgoing;    ///< Surface::outgoing
   std::span<const Eigen::Vector4f> points;   ///< fourth component 0
   std::span<const Eigen::Vector3f> normals;  ///< unit, outward; W of (5.1) or better
+  int max_crossings = kMaxCrossings;
 
   const GeodesicFace& face(std::int32_t h) const { return faces[face_of(h)]; }
   std::int32_t origin(std::int32_t h) const { return face(h).edge[corner_of(h)].origin; }
   std::int32_t twin(std::int32_t h) const { return face(h).edge[corner_of(h)].twin; }
   Eigen::Vector3f point(std::int32_t v) const { return points[v].head<3>(); }
 };
-
-/// A point nearer to a corner than this, in barycentric coordinates, is moved onto it
-/// (thesis 5.2.3).
-inline constexpr float kSnap = 1e-4f;
-/// A half-line that has crossed this many faces ends: the mesh is far finer here than its mean
-/// edge.
-inline constexpr int kMaxCrossings = 400;
-/// A half-line ends at a vertex with more faces than this: finding its way round the hub of a fan
-/// of 100,000 would cost as much as a whole scan.
-inline constexpr int kMaxFan = 1024;
 
 /// First half of the preparation of face f: connectivity and metric. Needs the points only.
 /// Degenerate faces get a small positive area, so that everything stays finite.
@@ -106,7 +107,7 @@ inline Ray reversed(const Ray& ray) {
 
 /// Follows a geodesic half-line and hands out its samples.
 /// Usage: `GeodesicLine line(mesh, start); while (line.advance(step)) use(line.ray());`
-/// Ends (advance is false, for good) at a boundary or after kMaxCrossings faces.
+/// Ends (advance is false, for good) at a boundary or after `max_crossings` faces.
 /// Source: thesis 5.2.1 - 5.2.3, Theorems 6 and 7.
 class GeodesicLine {
  public:

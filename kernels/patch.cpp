@@ -5,25 +5,6 @@
 namespace semigeo::kernels {
 namespace {
 
-/// Position of a surface point relative to `centre`. Differences first: absolute coordinates would
-/// cost the digits that curvature lives on.
-Eigen::Vector4f position(const SampledSurface& surface, const FacePoint& at,
-                         const Eigen::Vector4f& centre) {
-  const GeodesicMesh& mesh = surface.mesh;
-  const std::int32_t h = at.halfedge;
-  const Eigen::Vector4f a = mesh.points[mesh.origin(h)];
-  const Eigen::Vector4f b = mesh.points[mesh.origin(next(h))];
-  const Eigen::Vector4f c = mesh.points[mesh.origin(prev(h))];
-  Eigen::Vector4f p = (a - centre) + at.x * (b - a) + at.y * (c - a);
-  if (!surface.curved.empty()) {
-    const QuadraticFace& face = surface.curved[face_of(h)];
-    const float wa = 1 - at.x - at.y;
-    p += (wa * at.x) * face.bulge[corner_of(h)] + (at.x * at.y) * face.bulge[corner_of(next(h))] +
-         (at.y * wa) * face.bulge[corner_of(prev(h))];
-  }
-  return p;
-}
-
 /// Fills one half of a column, outwards from its base sample; result: how many samples exist.
 std::int8_t trace_half_column(const SampledSurface& surface, const Ray& start, float step,
                               const Eigen::Vector4f& centre, Eigen::Vector4f* base, int stride) {
@@ -31,7 +12,7 @@ std::int8_t trace_half_column(const SampledSurface& surface, const Ray& start, f
   std::int8_t reach = 0;
   while (reach < kReach && line.advance(step)) {
     ++reach;
-    base[reach * stride] = position(surface, line.ray().at, centre);
+    base[reach * stride] = sample_position(surface, line.ray().at, centre);
   }
   return reach;
 }
@@ -40,7 +21,7 @@ std::int8_t trace_half_column(const SampledSurface& surface, const Ray& start, f
 void trace_column(const SampledSurface& surface, const Ray& base, float step,
                   const Eigen::Vector4f& centre, int column, Patch& patch) {
   Eigen::Vector4f* middle = &patch.sample[column][kReach];
-  *middle = position(surface, base.at, centre);
+  *middle = sample_position(surface, base.at, centre);
   const auto [up, down] = perpendiculars(surface.mesh, base);
   patch.reach_up[column] = trace_half_column(surface, up, step, centre, middle, 1);
   patch.reach_down[column] = trace_half_column(surface, down, step, centre, middle, -1);
@@ -61,6 +42,25 @@ float Patch::completeness() const {
     for (int r = 0; r < kTaps; ++r)
       if (has(c, r)) sum += g[c] * g[r];
   return sum;
+}
+
+Eigen::Vector3f Patch::paired_mean() const {
+  const auto& g = gaussian_filters().smooth;
+  Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+  for (int c = 0; c < kTaps; ++c)
+    for (int r = 0; r < kTaps; ++r)
+      if (has(c, r) && has(kTaps - 1 - c, kTaps - 1 - r)) sum += g[c] * g[r] * sample[c][r];
+  return sum.head<3>();
+}
+
+PatchSamples Patch::samples() const {
+  PatchSamples samples;
+  for (int c = 0; c < kTaps; ++c)
+    for (int r = 0; r < kTaps; ++r)
+      if (has(c, r))
+        samples.push_back(
+            {static_cast<float>(c - kReach), static_cast<float>(r - kReach), 1, sample[c][r]});
+  return samples;
 }
 
 std::int32_t first_edge(const GeodesicMesh& mesh, std::int32_t v) {

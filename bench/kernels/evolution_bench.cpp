@@ -17,7 +17,7 @@ void evolve_all(benchmark::State& state, kernels::TriangleMesh mesh, bool curved
   const auto count = static_cast<std::int32_t>(surface.surface.vertex_count());
   for (auto _ : state)
     for (std::int32_t v = 0; v < count; ++v)
-      benchmark::DoNotOptimize(kernels::evolve_vertex(surface.sampled(), v, step));
+      benchmark::DoNotOptimize(kernels::evolve_vertex(surface.sampled(), v, {.step = step}));
   report_vertices(state, count);
 }
 

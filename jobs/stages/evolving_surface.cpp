@@ -47,7 +47,8 @@ EvolvingSurface::EvolvingSurface(kernels::Surface surface, const EvolutionOption
   const double mean = kernels::mean_edge_length(surface_);
   if (mean > 0) unit_ = std::exp2(std::round(std::log2(mean)));
   mean_edge_length_ = mean / unit_;
-  step_ = options_.step_factor * mean_edge_length_;
+  first_step_ = options_.step_factor * mean_edge_length_;
+  set_step(first_step_);
 
   points_.resize(surface_.points.size());
   for (std::size_t v = 0; v < points_.size(); ++v) {
@@ -78,7 +79,20 @@ EvolvingSurface::EvolvingSurface(kernels::Surface surface, const EvolutionOption
 }
 
 kernels::SampledSurface EvolvingSurface::sampled() const {
-  return {{faces_, surface_.outgoing, points_, normals_}, curved_};
+  return {{faces_, surface_.outgoing, points_, normals_, max_crossings_}, curved_};
+}
+
+kernels::PatchLayout EvolvingSurface::layout() const {
+  return {.step = static_cast<float>(step_),
+          .coordinates = options_.coordinates,
+          .principal = options_.principal};
+}
+
+/// A half-line may cross as many more faces as it is longer.
+void EvolvingSurface::set_step(double step) {
+  step_ = step;
+  const double edges = mean_edge_length_ > 0 ? step / mean_edge_length_ : 1;
+  max_crossings_ = static_cast<int>(kernels::kMaxCrossings * std::max(1.0, edges / 4));
 }
 
 void EvolvingSurface::angle_weighted_normals() {
@@ -132,7 +146,7 @@ void EvolvingSurface::sharpen(std::int64_t count, const VertexAt& vertex_at,
   context_.workers.for_blocks(count, kVertexBlock, [&](IndexRange range) {
     for (auto i = range.begin; i < range.end; ++i) {
       const std::int32_t v = vertex_at(i);
-      const auto e = kernels::evolve_vertex(surface, v, static_cast<float>(step_));
+      const auto e = kernels::evolve_vertex(surface, v, layout());
       next_normals_[v] = e.normal;
       truncated[v] = e.patch_completeness > 0 && e.patch_completeness < 1;
     }
@@ -154,20 +168,31 @@ LevelFields EvolvingSurface::advance(bool move) {
   fields.gaussian_curvature.resize(n);
   fields.mean_curvature.resize(n);
   fields.patch_completeness.resize(n);
+  if (options_.principal) {
+    fields.principal_curvatures.resize(n);
+    fields.principal_direction_1.resize(n);
+    fields.principal_direction_2.resize(n);
+  }
   fields.step = step_ * unit_;
   fields.scale = std::sqrt(variance_ + step_ * step_) * unit_;
   fields.mean_edge_length = mean_edge_length_ * unit_;
 
   const kernels::SampledSurface surface = sampled();
+  const kernels::PatchLayout patch = layout();
   const auto per_length = static_cast<float>(1 / unit_);
   context_.workers.for_blocks(n, kVertexBlock, [&](IndexRange range) {
     for (auto v = range.begin; v < range.end; ++v) {
       const kernels::EvolvedVertex e =
-          kernels::evolve_vertex(surface, static_cast<std::int32_t>(v), static_cast<float>(step_));
+          kernels::evolve_vertex(surface, static_cast<std::int32_t>(v), patch);
       fields.points[v] = points_[v].head<3>() * static_cast<float>(unit_);
       fields.gaussian_curvature[v] = e.gaussian_curvature * per_length * per_length;
       fields.mean_curvature[v] = e.mean_curvature * per_length;
       fields.patch_completeness[v] = e.patch_completeness;
+      if (options_.principal) {
+        fields.principal_curvatures[v] = {e.principal.k1 * per_length, e.principal.k2 * per_length};
+        fields.principal_direction_1[v] = e.principal.first;
+        fields.principal_direction_2[v] = e.principal.second;
+      }
       next_points_[v] << e.position, 0.0f;
       next_normals_[v] = e.smoothed_normal;
     }
@@ -179,6 +204,7 @@ LevelFields EvolvingSurface::advance(bool move) {
   normals_.swap(next_normals_);
   variance_ += kernels::gaussian_filters().variance * step_ * step_;
   mean_edge_length_ = restore_size();
+  if (options_.schedule == Schedule::octaves) set_step(std::max(first_step_, std::sqrt(variance_)));
   if (!options_.curved) angle_weighted_normals();
   prepare_faces();
   return fields;
@@ -210,8 +236,8 @@ std::vector<EvolvingSurface::PartMeasure> EvolvingSurface::measure_parts() const
   return parts;
 }
 
-/// Rescales each part about its centroid to its mean edge length of level 0 (thesis 5.1). Result:
-/// the mean edge length of the whole surface.
+/// Rescales each part about its centroid to its mean edge length of level 0 (thesis 5.1), but under
+/// octaves. Result: the mean edge length of the whole surface.
 double EvolvingSurface::restore_size() {
   struct Restoration {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -223,7 +249,8 @@ double EvolvingSurface::restore_size() {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const PartMeasure& part = parts[i];
     Restoration& r = restorations[i];
-    if (part.edge_length > 0 && part.area > 0) {
+    const bool restorable = part.edge_length > 0 && part.area > 0;
+    if (restorable && options_.schedule == Schedule::uniform) {
       r.factor = std::clamp(part_edge_length_[i] / part.mean_edge_length(), 1 / kMaxRestoration,
                             kMaxRestoration);  // 5.1, scale factor
       r.centre = part.moment / (3 * part.area);

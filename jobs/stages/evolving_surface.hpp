@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/run_context.hpp"
-#include "kernels/patch.hpp"
+#include "kernels/evolution.hpp"
 #include "kernels/surface.hpp"
 
 namespace semigeo::jobs {
@@ -18,14 +18,27 @@ struct LevelFields {
   std::vector<float> gaussian_curvature;
   std::vector<float> mean_curvature;
   std::vector<float> patch_completeness;
+  /// If asked for: k1 >= k2, and their directions, unit or zero.
+  std::vector<std::array<float, 2>> principal_curvatures;
+  std::vector<Eigen::Vector3f> principal_direction_1;
+  std::vector<Eigen::Vector3f> principal_direction_2;
   double step = 0;   ///< sample distance of the patches
-  double scale = 0;  ///< true sigma of the curvature: sqrt(variance of the level + step^2)
+  double scale = 0;  ///< sigma of the fields: sqrt(variance of the smoothing so far + step^2)
   double mean_edge_length = 0;
 };
 
+/// How the sampling step grows from level to level.
+enum class Schedule {
+  uniform,  ///< not at all, as in the thesis; each part is rescaled after each smoothing
+  octaves   ///< with the scale reached: two levels double it; nothing is rescaled
+};
+
 struct EvolutionOptions {
-  bool curved = true;      ///< sample quadratic faces; else flat ones, as the thesis does
-  double step_factor = 1;  ///< sample distance in mean edge lengths of level 0
+  bool curved = true;  ///< sample quadratic faces; else flat ones, as the thesis does
+  kernels::Coordinates coordinates = kernels::Coordinates::semigeodesic;
+  Schedule schedule = Schedule::uniform;
+  bool principal = false;  ///< principal curvatures as well
+  double step_factor = 1;  ///< sample distance of level 0 in its mean edge lengths
 };
 
 /// Evolves a surface level by level on all workers: kernels for one vertex go in, ranges of
@@ -39,8 +52,9 @@ class EvolvingSurface {
                   const engine::RunContext& context);
 
   /// Curvature of the current level; if `move`, the surface is then smoothed by the same patches,
-  /// each part rescaled about its centroid to its first mean edge length, and becomes the next
-  /// level. Results do not depend on the number of threads. Source: thesis 5.1, 5.3 - 5.6.
+  /// under the uniform schedule each part is rescaled about its centroid to its first mean edge
+  /// length, and becomes the next level. Results do not depend on the number of threads. Source:
+  /// thesis 5.1, 5.3 - 5.6.
   LevelFields advance(bool move);
 
   std::int64_t vertex_count() const { return static_cast<std::int64_t>(points_.size()); }
@@ -55,6 +69,8 @@ class EvolvingSurface {
   };
 
   kernels::SampledSurface sampled() const;
+  kernels::PatchLayout layout() const;
+  void set_step(double step);
   void prepare_faces();
   void angle_weighted_normals();
   void sharpen_normals();
@@ -70,8 +86,10 @@ class EvolvingSurface {
   std::vector<double> part_edge_length_;  ///< of level 0
   double unit_ = 1;                       ///< scan units per internal unit
   double mean_edge_length_ = 0;           ///< internal units
-  double step_ = 0;                       ///< sample distance, internal units
-  double variance_ = 0;                   ///< of the smoothing so far, internal units^2
+  double step_ = 0;                       ///< sample distance of this level, internal units
+  double first_step_ = 0;                 ///< of level 0
+  int max_crossings_ = kernels::kMaxCrossings;
+  double variance_ = 0;  ///< of the smoothing so far, internal units^2
 
   std::vector<Eigen::Vector4f> points_;
   std::vector<Eigen::Vector4f> next_points_;

@@ -40,7 +40,7 @@ struct PreparedSurface {
   void sharpen_normals(float step) {
     std::vector<Eigen::Vector3f> sharp(normals.size());
     for (std::int32_t v = 0; v < surface.vertex_count(); ++v)
-      sharp[v] = evolve_vertex(sampled(), v, step).normal;
+      sharp[v] = evolve_vertex(sampled(), v, {.step = step}).normal;
     normals = std::move(sharp);
     prepare();
   }
