@@ -35,6 +35,17 @@ bool is_complete(const Hdf5File& file) {
   return file.has_attribute("/", "complete") && attribute<std::int64_t>(file, "/", "complete") == 1;
 }
 
+std::optional<std::string> text_of_complete(const std::filesystem::path& path, const char* name) {
+  try {
+    const Hdf5File file = Hdf5File::open(path);
+    require_format(file);
+    if (!is_complete(file)) return std::nullopt;
+    return attribute<std::string>(file, "/", name);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
 const LevelArray* find_array(std::string_view name) {
   const auto* found = std::ranges::find(kLevelArrays, name, &LevelArray::name);
   return found == kLevelArrays.end() ? nullptr : found;
@@ -123,14 +134,11 @@ void Dataset::verify() const {
 }
 
 std::optional<std::string> complete_job_key(const std::filesystem::path& path) {
-  try {
-    const Hdf5File file = Hdf5File::open(path);
-    require_format(file);
-    if (!is_complete(file)) return std::nullopt;
-    return attribute<std::string>(file, "/", "job_key");
-  } catch (const Error&) {
-    return std::nullopt;
-  }
+  return text_of_complete(path, "job_key");
+}
+
+std::optional<std::string> complete_input_xxh3(const std::filesystem::path& path) {
+  return text_of_complete(path, "input_xxh3");
 }
 
 }  // namespace semigeo::io

@@ -57,5 +57,7 @@ class Dataset {
 /// The job key of a complete dataset; nothing if the file is absent, unreadable or incomplete.
 /// Reads a few kB: what a scan of the whole archive can afford for every file.
 std::optional<std::string> complete_job_key(const std::filesystem::path& path);
+/// Likewise the XXH3_128 of the scan it was made of.
+std::optional<std::string> complete_input_xxh3(const std::filesystem::path& path);
 
 }  // namespace semigeo::io

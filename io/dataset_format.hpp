@@ -17,7 +17,7 @@ inline constexpr int kMostLevels = 1000;  // three digits
 /// Where a dataset comes from; attributes of the root.
 struct DatasetHeader {
   std::string parameters_json = "{}";
-  std::string input_name;  ///< as given by the user
+  std::string input_name;  ///< path of the scan below the folder that was searched, as UTF-8
   std::string input_xxh3;  ///< XXH3_128 of the scan's bytes, 32 hexadecimal digits
   std::string job_key;     ///< hash of everything the content depends on
   std::string length_unit = "unknown";

@@ -118,9 +118,8 @@ std::string DatasetWriter::finish() {
                 "check the disk and run again");
   }
   // The sidecar first: a dataset under its final name counts as done and is not looked at again.
-  std::filesystem::path sidecar = target_.final_path();
-  sidecar.replace_extension(".xdmf");
-  write_file_atomically(sidecar, xdmf_text(target_.final_path().filename().string(), steps_));
+  write_file_atomically(sidecar_of(target_.final_path()),
+                        xdmf_text(target_.final_path().filename().string(), steps_));
   target_.commit();
   return digest;
 }

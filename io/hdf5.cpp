@@ -9,6 +9,9 @@
 namespace semigeo::io {
 namespace {
 
+constexpr const char* kDamaged =
+    "the file is damaged or not one of semigeo's: remove it and run again, or run with --verify";
+
 herr_t keep_first(unsigned, const H5E_error2_t* error, void* text) noexcept {
   *static_cast<std::string*>(text) = error->desc == nullptr ? "" : error->desc;
   return 1;  // stop: the walk began at the innermost entry
@@ -16,7 +19,7 @@ herr_t keep_first(unsigned, const H5E_error2_t* error, void* text) noexcept {
 
 Hdf5Handle file_access() {
   Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V110);
+  H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_V110);
   H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
   // Files are renamed when whole and never changed in place, so that locks protect nothing, and
   // network file systems without locks would refuse to open them.
@@ -64,12 +67,11 @@ void Hdf5File::fail(const std::string& place, const std::string& action) const {
   throw Error(shown_as_, place, "cannot " + action + ": " + reason,
               full       ? "free some space and run again"
               : writing_ ? "check the disk and run again"
-                         : "if it is one of semigeo's files it is damaged: compute it again");
+                         : kDamaged);
 }
 
 void Hdf5File::refuse(const std::string& place, const std::string& problem) const {
-  throw Error(shown_as_, place, problem,
-              "the file is damaged or not one of semigeo's: compute it again");
+  throw Error(shown_as_, place, problem, kDamaged);
 }
 
 std::int64_t Hdf5File::checked(std::int64_t result, const std::string& place,

@@ -113,7 +113,9 @@ Hdf5Handle Hdf5File::open_attribute(const std::string& object, const std::string
 }
 
 bool Hdf5File::has_attribute(const std::string& object, const std::string& name) const {
-  return H5Aexists(open_object(object).get(), name.c_str()) > 0;
+  const Hdf5Handle owner = open_object(object);
+  return checked(H5Aexists(owner.get(), name.c_str()), object + ", attribute " + name,
+                 "look for the attribute") > 0;
 }
 
 std::vector<std::string> Hdf5File::attribute_names(const std::string& object) const {

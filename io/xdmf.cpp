@@ -1,6 +1,9 @@
 #include "io/xdmf.hpp"
 
 #include <charconv>
+#include <vector>
+
+#include "io/dataset.hpp"
 
 namespace semigeo::io {
 namespace {
@@ -73,6 +76,20 @@ std::string xdmf_text(const std::string& dataset_name, std::span<const VtkhdfSte
       "    <Grid Name=\"levels\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
   for (const VtkhdfStep& step : steps) text += grid(dataset_name, step);
   return text + "    </Grid>\n  </Domain>\n</Xdmf>\n";
+}
+
+std::filesystem::path sidecar_of(const std::filesystem::path& dataset) {
+  return std::filesystem::path(dataset).replace_extension(".xdmf");
+}
+
+std::string sidecar_text(const std::filesystem::path& dataset) {
+  const Dataset source(dataset);
+  std::vector<VtkhdfStep> steps;
+  for (int k = 0; k < source.level_count(); ++k) {
+    const LevelInfo level = source.level(k);
+    steps.push_back({level.scale, level_path(k), level.vertices, level.triangles, k == 0});
+  }
+  return xdmf_text(dataset.filename().string(), steps);
 }
 
 }  // namespace semigeo::io

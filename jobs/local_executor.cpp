@@ -6,23 +6,32 @@
 
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
+#include "io/xdmf.hpp"
 
 namespace semigeo::jobs {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::uintmax_t size_of(const fs::path& file) {
-  std::error_code error;
-  const auto size = fs::file_size(file, error);
-  return error ? 0 : size;
+/// Whether the sidecar could be made; if not, the dataset must be, too.
+bool remake_sidecar(const SurfaceJob& job) {
+  std::string text;
+  try {
+    text = io::sidecar_text(job.output);
+  } catch (const io::Error&) {
+    return false;
+  }
+  io::write_file_atomically(io::sidecar_of(job.output), text);
+  return true;
 }
 
-JobOutcome run_job(const SurfaceJob& job, const SurfaceParameters& parameters,
+JobOutcome run_job(const PlannedJob& planned, const SurfaceParameters& parameters,
                    const engine::RunContext& context) {
+  const SurfaceJob& job = planned.job;
   JobOutcome outcome;
   try {
-    outcome.result = run_surface_job(job, parameters, context);
+    if (!planned.sidecar_only || !remake_sidecar(job))
+      outcome.result = run_surface_job(job, parameters, context);
     outcome.state = JobState::kDone;
   } catch (const std::bad_alloc&) {
     outcome.error = job.input.string() + ": not enough memory; free some or decimate the scan";
@@ -33,6 +42,13 @@ JobOutcome run_job(const SurfaceJob& job, const SurfaceParameters& parameters,
 }
 
 }  // namespace
+
+std::uintmax_t bytes_to_read(const PlannedJob& planned) {
+  if (planned.up_to_date || planned.sidecar_only) return 0;
+  std::error_code error;
+  const auto size = fs::file_size(planned.job.input, error);
+  return error ? 0 : size;
+}
 
 std::vector<JobOutcome> run_jobs(const std::vector<PlannedJob>& plan,
                                  const SurfaceParameters& parameters, engine::Workers& workers,
@@ -59,13 +75,13 @@ std::vector<JobOutcome> run_jobs(const std::vector<PlannedJob>& plan,
     progress.scan_started(planned.job.name);
     JobOutcome outcome;
     if (planned.error.empty()) {
-      outcome = run_job(planned.job, parameters, context);
+      outcome = run_job(planned, parameters, context);
     } else {
       outcome.error = planned.error;
     }
     outcome.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    progress.scan_ended(outcome.state == JobState::kDone, size_of(planned.job.input));
+    progress.scan_ended(outcome.state == JobState::kDone, bytes_to_read(planned));
     if (outcome.state == JobState::kFailed) progress.say("failed: " + outcome.error);
     outcomes.push_back(std::move(outcome));
   }

@@ -17,9 +17,12 @@ enum class JobState { kDone, kUpToDate, kFailed };
 struct JobOutcome {
   JobState state = JobState::kFailed;
   std::string error;                       ///< of a failed job: one sentence
-  std::optional<SurfaceJobResult> result;  ///< of a job that ran and succeeded
+  std::optional<SurfaceJobResult> result;  ///< of a job that made a dataset
   double seconds = 0;
 };
+
+/// By what the time that a job takes is judged: the size of its scan, 0 if that is not read.
+std::uintmax_t bytes_to_read(const PlannedJob& planned);
 
 /// Runs the jobs that are not up to date, one after the other, each on all workers. A job that
 /// fails never harms another. outcomes[i] belongs to plan[i].

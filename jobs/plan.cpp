@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
-#include <optional>
+#include <fstream>
+#include <iterator>
 #include <set>
 #include <utility>
 
@@ -10,6 +11,10 @@
 #include "io/error.hpp"
 #include "io/file_digest.hpp"
 #include "io/scan_reader.hpp"
+#include "io/utf8.hpp"
+#include "io/xdmf.hpp"
+#include "jobs/sources.hpp"
+#include "jobs/verification.hpp"
 
 namespace semigeo::jobs {
 namespace {
@@ -17,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Part of every key: raised whenever the same scan and parameters give other bytes.
-constexpr const char* kSurfaceJobVersion = "surface 2";
+constexpr const char* kSurfaceJobVersion = "surface 3";
 constexpr std::size_t kSuffixDigits = 8;
 constexpr std::size_t kMaxNameLength = 180;
 
@@ -64,36 +69,6 @@ bool is_hidden(const fs::path& path) {
   return path.filename().string().starts_with('.');
 }
 
-void search_folder(const fs::path& folder, const fs::path& archive, std::vector<FoundScan>& found) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied,
-                                         error);
-  if (error)
-    throw io::Error(folder, "", "cannot be searched: " + error.message(), "check its permissions");
-  for (const fs::recursive_directory_iterator end; entry != end; entry.increment(error)) {
-    if (error)
-      throw io::Error(folder, "", "cannot be searched: " + error.message(), "check the disk");
-    std::error_code ignored;
-    if (entry->is_directory(ignored)) {
-      if (is_hidden(entry->path()) || fs::equivalent(entry->path(), archive, ignored))
-        entry.disable_recursion_pending();
-    } else if (!is_hidden(entry->path()) && io::scan_format(entry->path())) {
-      files.push_back(entry->path());
-    }
-  }
-  std::sort(files.begin(), files.end());
-  for (const fs::path& file : files)
-    found.push_back({file, dataset_name(file.lexically_relative(folder))});
-}
-
-void add_file(const fs::path& file, std::vector<FoundScan>& found) {
-  if (!io::scan_format(file))
-    throw io::Error(file, "", "is not a scan that semigeo reads",
-                    "give .ply, .obj, .off or .stl files, also as .gz, or folders of them");
-  found.push_back({file, dataset_name(file.filename())});
-}
-
 /// By which two paths to one file are known; links that lead nowhere or in circles are themselves.
 fs::path identity(const fs::path& file) {
   std::error_code error;
@@ -101,14 +76,89 @@ fs::path identity(const fs::path& file) {
   return error ? fs::absolute(file).lexically_normal() : canonical;
 }
 
-/// Nothing if a dataset with this key exists.
-std::optional<std::string> reason_to_run(const SurfaceJob& job) {
+FoundScan found_scan(const fs::path& input, const fs::path& relative) {
+  return {input, relative.generic_string(), dataset_name(relative), identity(input), ""};
+}
+
+io::Error unsearchable(const fs::path& folder, const std::error_code& error) {
+  return {folder, "", "cannot be searched for scans: " + error.message(), "check its permissions"};
+}
+
+/// The scans of one folder, and in `folders` those below it. Returns why it cannot be searched.
+std::error_code list_folder(const fs::path& folder, const fs::path& archive,
+                            std::vector<fs::path>& files, std::vector<fs::path>& folders) {
+  std::error_code error;
+  fs::directory_iterator entry(folder, error);
+  for (const fs::directory_iterator end; !error && entry != end; entry.increment(error)) {
+    std::error_code ignored;
+    if (is_hidden(entry->path())) continue;
+    if (entry->is_directory(ignored)) {
+      if (!entry->is_symlink(ignored) && !fs::equivalent(entry->path(), archive, ignored))
+        folders.push_back(entry->path());
+    } else if (io::scan_format(entry->path())) {
+      files.push_back(entry->path());
+    }
+  }
+  return error;
+}
+
+void search_folder(const fs::path& top, const fs::path& archive, std::vector<FoundScan>& found) {
+  std::vector<fs::path> files;
+  std::vector<fs::path> folders = {top};
+  std::vector<FoundScan> unsearched;
+  while (!folders.empty()) {
+    const fs::path folder = std::move(folders.back());
+    folders.pop_back();
+    const std::error_code error = list_folder(folder, archive, files, folders);
+    if (!error) continue;
+    if (folder == top) throw unsearchable(folder, error);
+    unsearched.push_back(found_scan(folder, folder.lexically_relative(top)));
+    unsearched.back().error = unsearchable(folder, error).what();
+  }
+  std::sort(files.begin(), files.end());
+  for (const fs::path& file : files)
+    found.push_back(found_scan(file, file.lexically_relative(top)));
+  std::ranges::sort(unsearched, {}, &FoundScan::input);
+  std::ranges::move(unsearched, std::back_inserter(found));
+}
+
+void add_file(const fs::path& file, std::vector<FoundScan>& found) {
+  if (!io::scan_format(file))
+    throw io::Error(file, "", "is not a scan that semigeo reads",
+                    "give .ply, .obj, .off or .stl files, also as .gz, or folders of them");
+  found.push_back(found_scan(file, file.filename()));
+}
+
+fs::path output_of(const fs::path& archive, const std::string& name) {
+  return archive / "scans" / (name + ".vtkhdf");
+}
+
+/// Compares the dataset in the archive, if there is one, with what the job would make.
+void decide(PlannedJob& planned) {
+  const SurfaceJob& job = planned.job;
   std::error_code ignored;
-  if (!fs::exists(job.output, ignored)) return "no dataset yet";
-  const auto key = io::complete_job_key(job.output);
-  if (!key) return "the dataset is damaged or incomplete";
-  if (*key != job.key) return "the scan, the parameters or the version changed";
-  return std::nullopt;
+  if (!fs::exists(job.output, ignored)) {
+    planned.reason = "no dataset yet";
+  } else if (const auto key = io::complete_job_key(job.output); !key) {
+    planned.reason = "the dataset is damaged or incomplete";
+  } else if (*key != job.key) {
+    planned.reason = "the scan, the parameters or the version changed";
+  } else if (!fs::exists(io::sidecar_of(job.output), ignored)) {
+    planned.reason = "its .xdmf is missing";
+    planned.sidecar_only = true;
+  } else {
+    planned.up_to_date = true;
+  }
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Whether the sidecar says what it must, of a dataset that is whole.
+bool sidecar_is_right(const fs::path& dataset) {
+  return text_of(io::sidecar_of(dataset)) == io::sidecar_text(dataset);
 }
 
 }  // namespace
@@ -126,19 +176,9 @@ std::vector<FoundScan> find_scans(const std::vector<fs::path>& inputs, const fs:
     }
   }
 
-  std::set<std::string> seen_names;
-  std::set<fs::path> seen_files;
-  std::vector<FoundScan> unique;
-  for (FoundScan& scan : found) {
-    const fs::path file = identity(scan.input);
-    if (!seen_files.insert(file).second) continue;  // named twice
-    if (!seen_names.insert(scan.name).second) {
-      scan.name += "-" + short_hash(file.string());
-      seen_names.insert(scan.name);
-    }
-    unique.push_back(std::move(scan));
-  }
-  return unique;
+  std::set<fs::path> seen;
+  std::erase_if(found, [&](const FoundScan& scan) { return !seen.insert(scan.file).second; });
+  return found;
 }
 
 std::string job_key(const std::string& name, const std::string& input_xxh3,
@@ -149,24 +189,65 @@ std::string job_key(const std::string& name, const std::string& input_xxh3,
 
 std::vector<PlannedJob> plan_jobs(const RunConfig& config) {
   std::vector<PlannedJob> plan;
+  std::vector<Unnamed> unnamed;
   for (const FoundScan& scan : find_scans(config.inputs, config.archive)) {
     PlannedJob planned;
-    SurfaceJob& job = planned.job;
-    job.input = scan.input;
-    job.name = scan.name;
-    job.output = config.archive / "scans" / (scan.name + ".vtkhdf");
+    planned.job.input = scan.input;
+    planned.job.input_name = io::as_utf8(scan.relative);
+    planned.scan = scan.file;
+    planned.error = scan.error;
     try {
-      job.input_xxh3 = io::xxh3_of_file(scan.input);
-      job.key = job_key(scan.name, job.input_xxh3, config.surface);
-      const auto reason = reason_to_run(job);
-      planned.up_to_date = !reason;
-      planned.reason = reason.value_or("");
+      if (planned.error.empty()) planned.job.input_xxh3 = io::xxh3_of_file(scan.input);
     } catch (const std::exception& e) {
       planned.error = e.what();
     }
+    unnamed.push_back({scan.name, scan.file, planned.job.input_xxh3});
     plan.push_back(std::move(planned));
   }
+  const auto names =
+      choose_names(unnamed, Sources::read(config.archive),
+                   [&](const std::string& name, const std::string& xxh3) {
+                     return io::complete_input_xxh3(output_of(config.archive, name)) == xxh3;
+                   });
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    SurfaceJob& job = plan[i].job;
+    job.name = names[i];
+    job.output = output_of(config.archive, job.name);
+    job.key = job_key(job.name, job.input_xxh3, config.surface);
+    if (plan[i].error.empty()) decide(plan[i]);
+  }
   return plan;
+}
+
+void verify_plan(std::vector<PlannedJob>& plan, int at_once) {
+  std::vector<PlannedJob*> jobs;
+  std::vector<fs::path> datasets;
+  for (PlannedJob& planned : plan) {
+    if (!planned.up_to_date && !planned.sidecar_only) continue;
+    jobs.push_back(&planned);
+    datasets.push_back(planned.job.output);
+  }
+  const std::vector<std::string> problems = verify_datasets(datasets, at_once);
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    PlannedJob& planned = *jobs[i];
+    if (!problems[i].empty()) {
+      planned.reason = "its arrays are damaged";
+      planned.sidecar_only = false;
+    } else if (planned.up_to_date && !sidecar_is_right(datasets[i])) {
+      planned.reason = "its .xdmf is damaged";
+      planned.sidecar_only = true;
+    } else {
+      continue;
+    }
+    planned.up_to_date = false;
+  }
+}
+
+void record_sources(const fs::path& archive, const std::vector<PlannedJob>& plan) {
+  Sources sources = Sources::read(archive);
+  for (const PlannedJob& planned : plan)
+    if (planned.error.empty()) sources.claim(planned.job.name, planned.scan);
+  sources.write(archive);
 }
 
 }  // namespace semigeo::jobs

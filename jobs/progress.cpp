@@ -1,5 +1,6 @@
 #include "jobs/progress.hpp"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,7 +12,23 @@ namespace {
 
 constexpr std::chrono::milliseconds kLiveInterval{200};
 constexpr std::chrono::seconds kPlainInterval{60};
-constexpr int kLiveWidth = 100;
+constexpr std::size_t kUsualWidth = 80;
+constexpr std::size_t kShortestName = 8;
+
+/// Columns that a line may fill; the last is left free, as some terminals wrap once it is written.
+std::size_t terminal_width() {
+  winsize size{};
+  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return (known ? size.ws_col : kUsualWidth) - 1;
+}
+
+/// Shows both ends of `text`.
+std::string shortened(const std::string& text, std::size_t width) {
+  constexpr std::size_t kDots = 3;
+  if (text.size() <= width) return text;
+  const std::size_t tail = (width - kDots + 1) / 2;
+  return text.substr(0, width - kDots - tail) + "..." + text.substr(text.size() - tail);
+}
 
 template <typename... Arguments>
 std::string format(const char* pattern, Arguments... arguments) {
@@ -23,6 +40,12 @@ std::string format(const char* pattern, Arguments... arguments) {
 }
 
 }  // namespace
+
+std::string progress_line(const std::string& counts, const std::string& name, std::size_t width) {
+  const std::string text = counts + ", ";
+  if (text.size() + std::min(name.size(), kShortestName) > width) return counts.substr(0, width);
+  return text + shortened(name, width - text.size());
+}
 
 std::string short_number(double value) {
   if (value >= 1e9) return format("%.2f G", value / 1e9);
@@ -71,30 +94,30 @@ void Progress::say(const std::string& line) {
   live_ = false;
 }
 
-std::string Progress::line() const {
+std::string Progress::counts() const {
   const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
   const std::int64_t left = scans_ - done_ - failed_;
   std::string text = format("%ld done, %ld failed, %ld left", static_cast<long>(done_),
                             static_cast<long>(failed_), static_cast<long>(left));
-  if (elapsed > 0)
+  if (elapsed > 0 && vertex_levels_ > 0)
     text += ", " + short_number(static_cast<double>(vertex_levels_) / elapsed) + " vertices/s";
   if (bytes_done_ > 0 && bytes_ > bytes_done_) {
     const double rest =
         static_cast<double>(bytes_ - bytes_done_) / static_cast<double>(bytes_done_);
     text += ", " + short_duration(elapsed * rest) + " left";
   }
-  return text + ", " + current_;
+  return text;
 }
 
 void Progress::show(bool force) {
   const auto now = Clock::now();
   if (terminal_) {
     if (!force && now - shown_ < kLiveInterval) return;
-    std::fprintf(stderr, "\r\033[K%.*s", kLiveWidth, line().c_str());
+    std::fprintf(stderr, "\r\033[K%s", progress_line(counts(), current_, terminal_width()).c_str());
     live_ = true;
   } else {
     if (now - shown_ < kPlainInterval) return;
-    std::fprintf(stderr, "%s\n", line().c_str());
+    std::fprintf(stderr, "%s, %s\n", counts().c_str(), current_.c_str());
   }
   shown_ = now;
 }

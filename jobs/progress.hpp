@@ -31,7 +31,7 @@ class Progress : public engine::Observer {
  private:
   using Clock = std::chrono::steady_clock;
   void show(bool force);
-  std::string line() const;
+  std::string counts() const;
 
   const std::int64_t scans_;
   const std::uintmax_t bytes_;
@@ -46,6 +46,10 @@ class Progress : public engine::Observer {
   std::uintmax_t bytes_done_ = 0;
   bool live_ = false;  ///< a live line stands on the terminal
 };
+
+/// "counts, name" in at most `width` bytes: the name is shortened in its middle, then left out,
+/// then the counts are cut.
+std::string progress_line(const std::string& counts, const std::string& name, std::size_t width);
 
 /// "1.2 M", "340 k", "17".
 std::string short_number(double value);

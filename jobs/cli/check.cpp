@@ -2,11 +2,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "io/dataset.hpp"
-#include "io/error.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/datasets.hpp"
 #include "jobs/cli/json_output.hpp"
+#include "jobs/verification.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {
@@ -19,15 +18,15 @@ struct CheckOptions {
 int check(const CheckOptions& options) {
   auto files = nlohmann::json::array();
   int broken = 0;
-  for (const auto& path : datasets_at(options.target)) {
-    nlohmann::json entry = {{"file", path.string()}, {"ok", true}};
-    try {
-      io::Dataset(path).verify();
-    } catch (const std::exception& e) {
+  const auto datasets = datasets_at(options.target);
+  const auto problems = verify_datasets(datasets, 0);
+  for (std::size_t i = 0; i < datasets.size(); ++i) {
+    const bool ok = problems[i].empty();
+    nlohmann::json entry = {{"file", datasets[i].string()}, {"ok", ok}};
+    if (!ok) {
       ++broken;
-      entry["ok"] = false;
-      entry["error"] = e.what();
-      if (!options.json) std::printf("broken: %s\n", e.what());
+      entry["error"] = problems[i];
+      if (!options.json) std::printf("broken: %s\n", problems[i].c_str());
     }
     files.push_back(std::move(entry));
   }
@@ -50,7 +49,7 @@ void add_check(CLI::App& app, int& exit_code) {
       "  semigeo check archive/scans/x.ply.vtkhdf\n"
       "\n"
       "Reads every array and compares checksums, the content digest and the rules of VTKHDF. Exit\n"
-      "code 1 if anything is broken.\n");
+      "code 1 if anything is broken; `semigeo run ... --verify` makes that again.\n");
   command->add_option("target", options->target, "A dataset, or an archive")->required();
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options, &exit_code] { exit_code = check(*options); });

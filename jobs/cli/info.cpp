@@ -58,6 +58,14 @@ nlohmann::json level_json(const io::Dataset& dataset, int k) {
           {"truncated_vertices", truncated - invalid}};
 }
 
+nlohmann::json parsed(const io::Dataset& dataset, const char* name, const std::string& text) {
+  auto document = nlohmann::json::parse(text, nullptr, false);
+  if (document.is_discarded())
+    throw io::Error(dataset.path(), std::string("attribute ") + name, "is not JSON",
+                    "the file is damaged or not one of semigeo's");
+  return document;
+}
+
 nlohmann::json dataset_json(const std::filesystem::path& path) {
   const io::Dataset dataset(path);
   const io::DatasetHeader& header = dataset.header();
@@ -67,8 +75,8 @@ nlohmann::json dataset_json(const std::filesystem::path& path) {
           {"input_name", header.input_name},
           {"input_xxh3", header.input_xxh3},
           {"creator_version", dataset.creator_version()},
-          {"parameters", nlohmann::json::parse(header.parameters_json)},
-          {"repairs", nlohmann::json::parse(header.repairs_json)},
+          {"parameters", parsed(dataset, "parameters", header.parameters_json)},
+          {"repairs", parsed(dataset, "repairs", header.repairs_json)},
           {"length_unit", header.length_unit},
           {"origin", header.origin},
           {"digest", dataset.digest()},

@@ -1,5 +1,9 @@
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cstdio>
 #include <exception>
+#include <iostream>
 #include <memory>
 #include <string>
 
@@ -16,9 +20,19 @@ class ExamplesFirst : public CLI::Formatter {
   std::string make_footer(const CLI::App*) const override { return ""; }
 };
 
-}  // namespace
+/// A dataset must not get the number of a stream that the caller closed: results would be printed
+/// into it. What stands in for the stream refuses to be written.
+void occupy_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(stream, F_GETFD) == -1) open("/dev/null", O_RDONLY);
+}
 
-int main(int argc, char** argv) {
+bool results_were_written() {
+  std::cout.flush();
+  return std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good();
+}
+
+int run(int argc, char** argv) {
   using namespace semigeo::jobs::cli;
   CLI::App app{"semigeo turns archives of 3-D scans into multi-scale surface datasets.", "semigeo"};
   app.formatter(std::make_shared<ExamplesFirst>());
@@ -47,4 +61,16 @@ int main(int argc, char** argv) {
     return kSomeFailed;
   }
   return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  occupy_standard_streams();
+  const int exit_code = run(argc, argv);
+  if (results_were_written()) return exit_code;
+  std::fprintf(stderr,
+               "semigeo: standard output cannot be written to its end; check the disk or what it "
+               "is piped to\n");
+  return exit_code == 0 ? semigeo::jobs::cli::kSomeFailed : exit_code;
 }

@@ -4,12 +4,13 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <map>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
+#include "io/utf8.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/json_output.hpp"
 #include "jobs/local_executor.hpp"
@@ -25,6 +26,7 @@ struct RunOptions {
   std::string compression = "deflate";
   bool json = false;
   bool dry_run = false;
+  bool verify = false;
 };
 
 /// Counts and costs of a run, for its last line.
@@ -57,6 +59,10 @@ nlohmann::json scan_json(const PlannedJob& planned) {
           {"output", planned.job.output.string()}};
 }
 
+bool is_readable(const PlannedJob& planned) {
+  return planned.error.empty();
+}
+
 void print_plan(const std::vector<PlannedJob>& plan, bool json) {
   if (json) {
     auto scans = nlohmann::json::array();
@@ -70,16 +76,18 @@ void print_plan(const std::vector<PlannedJob>& plan, bool json) {
     print_document({{"scans", scans}});
     return;
   }
-  std::int64_t to_run = 0;
   for (const PlannedJob& p : plan) {
     if (p.up_to_date) continue;
-    ++to_run;
     std::printf("%s: %s\n", p.job.name.c_str(),
                 p.error.empty() ? ("would run: " + p.reason).c_str() : p.error.c_str());
   }
-  std::printf("%lld scans: %lld would run, %lld up to date\n", static_cast<long long>(plan.size()),
-              static_cast<long long>(to_run),
-              static_cast<long long>(plan.size()) - static_cast<long long>(to_run));
+  const auto up_to_date = std::ranges::count_if(plan, &PlannedJob::up_to_date);
+  const auto unreadable = std::ranges::count_if(plan, std::not_fn(is_readable));
+  const auto all = static_cast<long long>(plan.size());
+  std::printf("%lld scans: %lld would run, %lld up to date", all, all - up_to_date - unreadable,
+              static_cast<long long>(up_to_date));
+  if (unreadable > 0) std::printf(", %lld cannot be read", static_cast<long long>(unreadable));
+  std::printf("\n");
 }
 
 const char* state_name(JobState state) {
@@ -142,18 +150,19 @@ void print_text(const std::vector<PlannedJob>& plan, const std::vector<JobOutcom
   }
   for (const JobOutcome& outcome : outcomes)
     if (outcome.state == JobState::kFailed) std::printf("failed: %s\n", outcome.error.c_str());
-  std::printf(
-      "%lld done, %lld up to date, %lld failed; %s vertex levels/s; %s wall, %s CPU, %.0f MB "
-      "peak\n",
-      static_cast<long long>(summary.done), static_cast<long long>(summary.up_to_date),
-      static_cast<long long>(summary.failed), short_number(summary.rate()).c_str(),
-      short_duration(summary.wall_seconds).c_str(), short_duration(summary.cpu_seconds).c_str(),
-      summary.peak_bytes / 1e6);
+  const std::string rate =
+      summary.vertex_levels > 0 ? short_number(summary.rate()) + " vertex levels/s; " : "";
+  std::printf("%lld done, %lld up to date, %lld failed; %s%s wall, %s CPU, %.0f MB peak\n",
+              static_cast<long long>(summary.done), static_cast<long long>(summary.up_to_date),
+              static_cast<long long>(summary.failed), rate.c_str(),
+              short_duration(summary.wall_seconds).c_str(),
+              short_duration(summary.cpu_seconds).c_str(), summary.peak_bytes / 1e6);
 }
 
-/// Makes the folder and, the first time, the configuration in it: what fails here fails before the
-/// hours of work.
-void prepare_archive(const fs::path& archive, const std::string& effective_config) {
+/// Makes the folder and, the first time, the configuration in it, and notes whose datasets it
+/// holds: what fails here fails before the hours of work.
+void prepare_archive(const fs::path& archive, const std::string& effective_config,
+                     const std::vector<PlannedJob>& plan) {
   std::error_code error;
   fs::create_directories(archive, error);
   if (error)
@@ -162,6 +171,12 @@ void prepare_archive(const fs::path& archive, const std::string& effective_confi
   io::remove_stale_partials(archive);
   const fs::path config_file = archive / "semigeo.toml";
   if (!fs::exists(config_file)) io::write_file_atomically(config_file, effective_config);
+  try {
+    record_sources(archive, plan);
+  } catch (const io::Error&) {
+    // A read-only archive in which nothing is to be made may stay as it is.
+    if (!std::ranges::all_of(plan, &PlannedJob::up_to_date)) throw;
+  }
 }
 
 int run(const RunOptions& options, const std::string& effective_config) {
@@ -177,21 +192,19 @@ int run(const RunOptions& options, const std::string& effective_config) {
     std::fprintf(stderr, "semigeo: no .ply, .obj, .off or .stl file (or .gz of one) was found\n");
     return kUsage;
   }
+  if (options.verify) verify_plan(plan, options.config.threads);
   if (options.dry_run) {
     print_plan(plan, options.json);
-    return kAllDone;
+    return std::ranges::all_of(plan, is_readable) ? kAllDone : kSomeFailed;
   }
 
   std::int64_t to_run = 0;
   std::uintmax_t bytes = 0;
   for (const PlannedJob& p : plan) {
-    if (p.up_to_date) continue;
-    std::error_code error;
-    const auto size = fs::file_size(p.job.input, error);
-    ++to_run;
-    bytes += error ? 0 : size;
+    to_run += p.up_to_date ? 0 : 1;
+    bytes += bytes_to_read(p);
   }
-  prepare_archive(options.config.archive, effective_config);
+  prepare_archive(options.config.archive, effective_config, plan);
   engine::Workers workers(options.config.threads);
   RunSummary summary;
   std::vector<JobOutcome> outcomes;
@@ -246,6 +259,7 @@ void add_run(CLI::App& app, int& exit_code) {
       "  semigeo run scans/ --output archive             every scan below scans/, 8 smoothings\n"
       "  semigeo run a.ply b.stl.gz --output archive --levels 20 --unit mm\n"
       "  semigeo run scans/ --output archive --dry-run   what would run, and why\n"
+      "  semigeo run scans/ --output archive --verify    also what the disk has damaged since\n"
       "\n"
       "What is up to date, by content, is left alone; a run that was interrupted goes on where it\n"
       "stopped. Options may also come from --config FILE. Exit codes: 0 all done, 1 some scans "
@@ -274,7 +288,8 @@ void add_run(CLI::App& app, int& exit_code) {
   command->add_option("--compression", options->compression, "Of the stored arrays")
       ->check(CLI::IsMember({"deflate", "none"}));
   command->add_option("--unit", surface.length_unit, "Length unit of the scans, as a label")
-      ->check([](const std::string& unit) {
+      ->check([](const std::string& unit) -> std::string {
+        if (!io::is_utf8(unit)) return "is not UTF-8; give a short name such as mm or inch";
         const bool plain = !unit.empty() && unit.size() <= 32 &&
                            unit.find_first_of("\"\\\n\r\t") == std::string::npos;
         return plain ? std::string() : "give a short name such as mm or inch";
@@ -282,6 +297,10 @@ void add_run(CLI::App& app, int& exit_code) {
   command->add_option("--threads", config.threads, "Threads at once; 0: one per core")
       ->check(CLI::Range(0, 4096));
   command->add_flag("--json", options->json, "Results as JSON on stdout")->configurable(false);
+  command
+      ->add_flag("--verify", options->verify,
+                 "Read every array of what counts as up to date; make again what is damaged")
+      ->configurable(false);
   command->add_flag("--dry-run", options->dry_run, "Say what would run, and why; write nothing")
       ->configurable(false);
   command->fallthrough();

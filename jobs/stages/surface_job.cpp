@@ -181,7 +181,7 @@ SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters&
   io::DatasetHeader header;
   header.parameters_json = to_json(parameters);
   header.length_unit = parameters.length_unit;
-  header.input_name = job.name;
+  header.input_name = job.input_name;
   header.input_xxh3 = job.input_xxh3;
   header.job_key = job.key;
 

@@ -2,6 +2,7 @@
 harms nothing else."""
 
 import gzip
+import json
 import os
 import shutil
 import struct
@@ -77,7 +78,7 @@ class BadScansTest(SemigeoTest):
         self.assertIn(f"0 done, 3 up to date, {len(cases)} failed", lines[-1])
 
     def test_names_that_are_no_utf8(self):
-        name = os.fsencode(self.scans) + b"/bad\xffname.obj"
+        name = os.fsencode(self.scans) + "/Krug Nº bad".encode() + b"\xffname.obj"
         with open(name, "w") as file:
             file.write(obj_text(icosphere(1)))
         with open(os.fsencode(self.scans) + b"/\xfe.ply", "w") as file:
@@ -86,6 +87,11 @@ class BadScansTest(SemigeoTest):
         document = self.run_scans("--levels", 1, code=1)
         self.assertEqual((document["done"], document["failed"]), (1, 1))
         self.semigeo("check", self.archive)
+        self.semigeo("info", self.archive)
+        made = json.loads(self.semigeo("info", self.archive, "--json").stdout)["datasets"]
+        self.assertEqual([d["input_name"] for d in made], ["Krug Nº bad\ufffdname.obj"])
+        again = self.run_scans("--levels", 1, code=1)
+        self.assertEqual((again["up_to_date"], again["failed"]), (1, 1))
 
 
 class DamagedDatasetTest(SemigeoTest):
@@ -183,15 +189,14 @@ class DamagedDatasetTest(SemigeoTest):
                 self.assertIn(f"broken: {path}: ", process.stdout)
                 path.write_bytes(self.whole["scans/b.ply.vtkhdf"])
 
-    def test_check_finds_what_only_other_readers_would_stumble_over(self):
-        for filter, parameter, wrong in ((b"shuffle\0", 4, 2), (b"deflate\0", 1, 33)):
-            path = self.dataset("b.ply")
-            whole = self.whole["scans/b.ply.vtkhdf"]
-            before, after = (filter + struct.pack("<I", value) for value in (parameter, wrong))
-            self.assertIn(before, whole)
-            path.write_bytes(whole.replace(before, after, 1))
-            process = self.semigeo("check", self.archive, code=1)
-            self.assertIn("filters", process.stdout)
+    def test_check_finds_arrays_stored_otherwise(self):
+        path = self.dataset("b.ply")
+        with h5py.File(path, "r+") as file:
+            normals = file["levels/001/normals"][...]
+            del file["levels/001/normals"]
+            file["levels/001"].create_dataset("normals", data=normals, compression="gzip")
+        process = self.semigeo("check", self.archive, code=1)
+        self.assertIn("filters", process.stdout)
 
     def test_a_cut_or_emptied_dataset_is_found_and_remade(self):
         for size in (0, 100, -1):
@@ -203,6 +208,19 @@ class DamagedDatasetTest(SemigeoTest):
                 self.assertEqual(self.states(self.run_scans("--levels", 2)),
                                  {"a.ply": "up to date", "b.ply": "done", "c.ply": "up to date"})
                 self.assertEqual(contents(self.archive), self.whole)
+
+    def test_a_damaged_dataset_is_remade_by_a_run_that_verifies(self):
+        _, offset, size = self.chunks("b.ply")[0]
+        self.damage("b.ply", offset + size // 2)
+        self.assertIn("run with --verify", self.semigeo("check", self.archive, code=1).stdout)
+        self.assertEqual(self.run_scans("--levels", 2)["up_to_date"], 3)
+        process = self.semigeo("run", self.scans, "--output", self.archive, "--levels", 2,
+                               "--verify", "--dry-run")
+        self.assertIn("b.ply: would run: its arrays are damaged\n", process.stdout)
+        self.assertEqual(self.states(self.run_scans("--levels", 2, "--verify")),
+                         {"a.ply": "up to date", "b.ply": "done", "c.ply": "up to date"})
+        self.assertEqual(contents(self.archive), self.whole)
+        self.assertEqual(self.run_scans("--levels", 2, "--verify")["up_to_date"], 3)
 
     def test_a_damaged_dataset_is_remade_once_it_is_removed(self):
         _, offset, size = self.chunks("b.ply")[0]
@@ -219,11 +237,7 @@ class DamagedDatasetTest(SemigeoTest):
         self.assertEqual(len(process.stdout.splitlines()), 2)
 
 
-class OutputFolderTest(SemigeoTest):
-    def setUp(self):
-        super().setUp()
-        write_ply(self.scans / "a.ply", icosphere(1))
-
+class UnprivilegedTest(SemigeoTest):
     def unprivileged(self):
         """Arguments that run a process as one who may not write everywhere."""
         if os.geteuid() != 0:
@@ -231,11 +245,46 @@ class OutputFolderTest(SemigeoTest):
         self.folder.chmod(0o755)
         return {"user": 65534, "group": 65534, "extra_groups": []}
 
-    def run_unprivileged(self, archive):
+    def run_unprivileged(self, archive, *arguments):
         program = self.folder / "semigeo"  # where anybody may read it
         shutil.copy(PROGRAM, program)
-        return subprocess.run([program, "run", self.scans, "--output", archive, "--levels", "1"],
+        return subprocess.run([program, "run", self.scans, "--output", archive, "--levels", "1",
+                               *arguments],
                               capture_output=True, text=True, timeout=60, **self.unprivileged())
+
+
+class UnreadableScansTest(UnprivilegedTest):
+    def setUp(self):
+        super().setUp()
+        write_ply(self.scans / "a.ply", icosphere(1))
+        write_ply(self.scans / "locked/b.ply", icosphere(1))
+        write_ply(self.scans / "z/c.ply", icosphere(1))
+        self.archive.mkdir()
+        self.archive.chmod(0o777)
+
+    def test_a_folder_that_cannot_be_searched_is_a_failure_with_a_sentence(self):
+        locked = self.scans / "locked"
+        locked.chmod(0)
+        self.addCleanup(locked.chmod, 0o755)
+        for arguments in (("--dry-run",), ()):
+            process = self.run_unprivileged(self.archive, *arguments)
+            self.assertEqual(process.returncode, 1)
+            self.assertIn(f"{locked}: cannot be searched", process.stdout)
+        self.assertIn("2 done, 0 up to date, 1 failed", process.stdout)
+        self.assertIn(f"failed: {locked}: cannot be searched", process.stderr)
+
+    def test_a_dry_run_over_an_unreadable_scan_is_a_failure(self):
+        (self.scans / "a.ply").unlink()
+        os.symlink("nowhere", self.scans / "a.ply")
+        process = self.semigeo("run", self.scans, "--output", self.archive, "--dry-run", code=1)
+        self.assertIn(f"{self.scans / 'a.ply'}: ", process.stdout)
+        self.assertIn("3 scans: 2 would run, 0 up to date, 1 cannot be read\n", process.stdout)
+
+
+class OutputFolderTest(UnprivilegedTest):
+    def setUp(self):
+        super().setUp()
+        write_ply(self.scans / "a.ply", icosphere(1))
 
     def test_missing_folders_are_made(self):
         self.run_scans(archive=self.folder / "x/y/z")

@@ -1,9 +1,13 @@
 """The commands as a user meets them: help, exit codes, JSON, plans, configuration, progress."""
 
+import fcntl
 import json
 import os
 import pty
+import shutil
+import struct
 import subprocess
+import termios
 import unittest
 from pathlib import Path
 
@@ -40,7 +44,7 @@ class UsageTest(SemigeoTest):
                           (*run, "--levels", -1), (*run, "--levels", 1000),
                           (*run, "--levels", "many"), (*run, "--step", 0), (*run, "--step", "nan"),
                           (*run, "--surface", "round"), (*run, "--compression", "zip"),
-                          (*run, "--threads", -1), (*run, "--frobnicate"),
+                          (*run, "--threads", -1), (*run, "--unit", b"\xff"), (*run, "--frobnicate"),
                           (*run, "--config", self.folder / "none.toml"),
                           ("run", self.folder / "missing", "--output", self.archive),
                           ("run", self.scans / "notes.txt", "--output", self.archive),
@@ -51,6 +55,26 @@ class UsageTest(SemigeoTest):
                 self.assertEqual(process.stdout, "")
                 self.assertNotEqual(process.stderr, "")
         self.assertFalse(self.archive.exists())
+
+    def test_results_that_cannot_be_written_are_a_failure(self):
+        write_ply(self.scans / "a.ply", icosphere(0))
+        run = ("run", self.scans, "--output", self.archive)
+        self.semigeo(*run)
+        with open("/dev/full", "w") as full:
+            for arguments in (("info", self.archive, "--json"), ("info", self.archive), run,
+                              (*run, "--dry-run"), ("check", self.archive), ("--help",),
+                              ("export", self.dataset("a.ply"), "-o", self.folder / "a.ply")):
+                process = subprocess.run([PROGRAM, *arguments], stdout=full,
+                                         stderr=subprocess.PIPE, timeout=60, text=True)
+                self.assertEqual(process.returncode, 1, arguments)
+                self.assertIn("standard output", process.stderr)
+
+    def test_a_closed_standard_output_is_no_dataset(self):
+        write_ply(self.scans / "a.ply", icosphere(0))
+        process = subprocess.run(["sh", "-c", '"$@" >&-', "sh", PROGRAM, "run", self.scans,
+                                  "--output", self.archive], stderr=subprocess.PIPE, timeout=60)
+        self.assertEqual(process.returncode, 1)
+        self.semigeo("check", self.archive)
 
     def test_missing_targets_are_named(self):
         for command in ("info", "check"):
@@ -140,8 +164,11 @@ class RunTest(SemigeoTest):
         self.assertIn("2 done", process.stdout)
         self.assertTrue(self.dataset("square.obj").exists())
 
-    def test_a_terminal_sees_a_line_that_goes_away(self):
+    def shown_on_terminal(self, columns=None):
+        """What a run shows on a terminal, and the process."""
         terminal, stderr = pty.openpty()
+        if columns:
+            fcntl.ioctl(stderr, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
         process = subprocess.run([PROGRAM, "run", self.scans, "--output", self.archive],
                                  stdout=subprocess.PIPE, stderr=stderr, timeout=60, text=True)
         os.close(stderr)
@@ -156,12 +183,27 @@ class RunTest(SemigeoTest):
             shown += piece
         os.close(terminal)
         self.assertEqual(process.returncode, 0)
-        lines = shown.decode().split("\r\x1b[K")
+        return shown.decode(), process
+
+    def test_a_live_line_fits_into_the_terminal(self):
+        name = "n" * 150 + ".ply"
+        write_ply(self.scans / name, icosphere(1))
+        for columns, width in ((None, 80), (60, 60), (20, 20), (300, 300)):
+            shutil.rmtree(self.archive, ignore_errors=True)
+            shown, _ = self.shown_on_terminal(columns)
+            lines = shown.split("\r\x1b[K")
+            self.assertGreater(len(lines), 3)
+            self.assertLess(max(len(line) for line in lines), width)
+            self.assertEqual(any(name in line for line in lines), width == 300)
+
+    def test_a_terminal_sees_a_line_that_goes_away(self):
+        shown, process = self.shown_on_terminal()
+        lines = shown.split("\r\x1b[K")
         self.assertTrue(any("0 done, 0 failed, 2 left" in l and "sphere.ply" in l for l in lines))
         self.assertTrue(any("1 done, 0 failed, 1 left" in l for l in lines))
         self.assertEqual(lines[-1], "")  # erased
-        self.assertNotIn("\n", shown.decode())
-        self.assertNotIn("\x1b[3", shown.decode())  # no colour
+        self.assertNotIn("\n", shown)
+        self.assertNotIn("\x1b[3", shown)  # no colour
         self.assertEqual(len(process.stdout.splitlines()), 2)
 
 

@@ -25,7 +25,8 @@ class RerunTest(SemigeoTest):
         self.assertIn("3 done, 0 up to date, 0 failed", first.stdout)
         before = [self.inode_of(name) for name in ("a.ply", "deep__b.ply", "c.ply")]
         second = self.semigeo("run", self.scans, "--output", self.archive, "--levels", 2)
-        self.assertIn("0 done, 3 up to date, 0 failed", second.stdout)
+        self.assertIn("0 done, 3 up to date, 0 failed; ", second.stdout)
+        self.assertNotIn("vertex levels/s", second.stdout)
         self.assertEqual(before,
                          [self.inode_of(name) for name in ("a.ply", "deep__b.ply", "c.ply")])
 
@@ -76,7 +77,44 @@ class RerunTest(SemigeoTest):
         other = self.folder / "elsewhere/archive"
         self.semigeo("run", "copy/", "--output", "archive", "--levels", 2,
                      cwd=self.folder / "elsewhere")
+        for archive in (other, self.archive):
+            (archive / "sources.json").unlink()  # it names the places
         self.assert_same_archives(other, self.archive)
+
+    def test_a_missing_sidecar_is_remade_without_computing(self):
+        self.run_scans("--levels", 2)
+        sidecar = self.dataset("a.ply").with_suffix(".xdmf")
+        wanted, before = sidecar.read_bytes(), self.inode_of("a.ply")
+        sidecar.unlink()
+        document = self.run_scans("--levels", 2)
+        self.assertEqual(self.states(document),
+                         {"a.ply": "done", "b.ply": "up to date", "c.ply": "up to date"})
+        self.assertEqual((document["vertex_levels"], self.inode_of("a.ply")), (0, before))
+        self.assertEqual(sidecar.read_bytes(), wanted)
+
+    def test_scans_of_one_name_from_two_folders_do_not_replace_each_other(self):
+        folders = [self.folder / "two/a", self.folder / "two/b"]
+        for radius, folder in enumerate(folders, 1):
+            write_ply(folder / "x.ply", icosphere(1, radius))
+            self.semigeo("run", folder, "--output", self.archive, "--levels", 1)
+        self.assertEqual(len(list((self.archive / "scans").glob("*.vtkhdf"))), 2)
+        for inputs in (folders[:1], folders[1:], folders, folders[::-1]):
+            process = self.semigeo("run", *inputs, "--output", self.archive, "--levels", 1)
+            self.assertIn(f"0 done, {len(inputs)} up to date", process.stdout)
+        # They may move, alone or together.
+        (self.folder / "two").rename(self.folder / "three")
+        process = self.semigeo("run", self.folder / "three/b", self.folder / "three/a", "--output",
+                               self.archive, "--levels", 1)
+        self.assertIn("0 done, 2 up to date", process.stdout)
+
+    def test_names_do_not_depend_on_the_order_of_the_inputs(self):
+        folders = [self.folder / "a", self.folder / "b"]
+        archives = [self.folder / "forth", self.folder / "back"]
+        for radius, folder in enumerate(folders, 1):
+            write_ply(folder / "x.ply", icosphere(1, radius))
+        for inputs, archive in zip((folders, folders[::-1]), archives):
+            self.semigeo("run", *inputs, "--output", archive, "--levels", 1)
+        self.assert_same_archives(*archives)
 
     def test_every_number_of_threads_gives_the_same_bytes(self):
         # Several chunks of every array, several blocks of vertices, a rim, several parts.

@@ -28,7 +28,7 @@ class SemigeoTest(unittest.TestCase):
 
     def semigeo(self, *arguments, code=0, **options):
         """Runs the program, expects this exit code, and returns the process with its output."""
-        process = subprocess.run([str(PROGRAM), *map(str, arguments)], capture_output=True,
+        process = subprocess.run([str(PROGRAM), *(a if isinstance(a, bytes) else str(a) for a in arguments)], capture_output=True,
                                  timeout=TIMEOUT, **options)
         process.stdout = process.stdout.decode(errors="backslashreplace")
         process.stderr = process.stderr.decode(errors="backslashreplace")

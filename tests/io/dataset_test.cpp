@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "io/error.hpp"
+#include "io/hdf5_library.hpp"
 #include "tests/io/sample_dataset.hpp"
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -181,9 +182,30 @@ TEST(Dataset, VerifyNamesTheArrayWhoseBytesChanged) {
 TEST(Dataset, VerifyComparesTheDigest) {
   const tests::TemporaryFolder folder;
   tests::write_sample(folder / "a.vtkhdf");
-  change(folder / "a.vtkhdf", "key-of-the-job", "key-of-a-thief");
+  {
+    // HDF5's own checksums are right again.
+    const Hdf5Handle file(H5Fopen((folder / "a.vtkhdf").c_str(), H5F_ACC_RDWR, H5P_DEFAULT),
+                          H5Fclose);
+    const Hdf5Handle attribute(H5Aopen(file.get(), "job_key", H5P_DEFAULT), H5Aclose);
+    const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose);
+    ASSERT_GE(H5Awrite(attribute.get(), type.get(), "key-of-a-thief"), 0);
+  }
   const std::string message = failure_of_verify(folder / "a.vtkhdf");
   EXPECT_NE(message.find("attribute digest"), std::string::npos) << message;
+}
+
+TEST(Dataset, DamagedNamesAndAttributesAreFound) {
+  const tests::TemporaryFolder folder;
+  for (const auto& [from, to] : {std::pair{"key-of-the-job", "key-of-a-thief"},
+                                 {"mean_curvature", "mean_curvaturf"},
+                                 {"ConnectivityIdOffsets", "ConnectivityIdOffsetz"},
+                                 {"/levels/001/normals", "/levels/002/normals"}}) {
+    tests::write_sample(folder / "a.vtkhdf", {.vertices = 100, .triangles = 100});
+    change(folder / "a.vtkhdf", from, to);
+    const std::string message = failure_of_verify(folder / "a.vtkhdf");
+    EXPECT_NE(message.find("checksum"), std::string::npos) << from << ": " << message;
+    EXPECT_NE(message.find("run with --verify"), std::string::npos) << message;
+  }
 }
 
 TEST(Dataset, TruncatedFilesAreRefused) {
@@ -223,6 +245,8 @@ TEST(Dataset, JobKeyOfCompleteFilesOnly) {
   tests::write_sample(folder / "a.vtkhdf");
   write_file(folder / "text.vtkhdf", "text");
   EXPECT_EQ(complete_job_key(folder / "a.vtkhdf"), "key-of-the-job");
+  EXPECT_EQ(complete_input_xxh3(folder / "a.vtkhdf"), tests::sample_header().input_xxh3);
+  EXPECT_EQ(complete_input_xxh3(folder / "missing.vtkhdf"), std::nullopt);
   EXPECT_EQ(complete_job_key(folder / "missing.vtkhdf"), std::nullopt);
   EXPECT_EQ(complete_job_key(folder / "text.vtkhdf"), std::nullopt);
   EXPECT_EQ(complete_job_key(folder.path()), std::nullopt);

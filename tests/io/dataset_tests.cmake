@@ -9,6 +9,7 @@ semigeo_tests(io_dataset_tests
     chunk_codec_test.cpp
     dataset_test.cpp
     hdf5_test.cpp
+    utf8_test.cpp
     vtkhdf_test.cpp
     xdmf_test.cpp
   LINK semigeo_sample_dataset)

@@ -6,14 +6,15 @@
 #include <iterator>
 #include <set>
 
+#include "io/error.hpp"
 #include "tests/io/sample_dataset.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace semigeo::io {
 namespace {
 
-std::string sidecar_of(const std::filesystem::path& path) {
-  std::ifstream stream(std::filesystem::path(path).replace_extension(".xdmf"));
+std::string written_sidecar(const std::filesystem::path& path) {
+  std::ifstream stream(sidecar_of(path));
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
@@ -33,7 +34,7 @@ std::string between(const std::string& text, std::size_t from, const std::string
 TEST(Xdmf, EveryReferenceHasTheShapeAndTypeOfItsArray) {
   const tests::TemporaryFolder folder;
   tests::write_sample(folder / "s.vtkhdf", {.changing = true});
-  const std::string text = sidecar_of(folder / "s.vtkhdf");
+  const std::string text = written_sidecar(folder / "s.vtkhdf");
   const Hdf5File file = Hdf5File::open(folder / "s.vtkhdf");
   std::set<std::string> seen;
   for (std::size_t at = text.find("<DataItem "); at != std::string::npos;
@@ -52,6 +53,16 @@ TEST(Xdmf, EveryReferenceHasTheShapeAndTypeOfItsArray) {
     seen.insert(path);
   }
   EXPECT_EQ(seen.size(), 3U * 8U);
+}
+
+TEST(Xdmf, IsMadeAgainFromTheDatasetAlone) {
+  const tests::TemporaryFolder folder;
+  for (const bool changing : {false, true}) {
+    tests::write_sample(folder / "s.vtkhdf", {.changing = changing});
+    EXPECT_EQ(sidecar_text(folder / "s.vtkhdf"), written_sidecar(folder / "s.vtkhdf"));
+  }
+  std::filesystem::resize_file(folder / "s.vtkhdf", 1000);
+  EXPECT_THROW(sidecar_text(folder / "s.vtkhdf"), Error);
 }
 
 TEST(Xdmf, OneGridPerLevelInATemporalCollection) {

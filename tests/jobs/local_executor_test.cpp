@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <iterator>
 
 #include "io/dataset.hpp"
 #include "io/error.hpp"
@@ -96,6 +97,23 @@ TEST_F(LocalExecutorTest, WhatIsUpToDateIsLeftAlone) {
   add("b.obj", shapes::icosphere(0));
   EXPECT_EQ(states(), (States{kUpToDate, kDone}));
   EXPECT_EQ(states(), (States{kUpToDate, kUpToDate}));
+}
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST_F(LocalExecutorTest, AMissingSidecarIsMadeFromTheDataset) {
+  add("a.obj", shapes::icosphere(1));
+  EXPECT_EQ(states(), States{kDone});
+  const fs::path sidecar = config_.archive / "scans/a.obj.xdmf";
+  const std::string text = bytes_of(sidecar);
+  fs::remove(sidecar);
+  EXPECT_EQ(states(), States{kDone});
+  EXPECT_EQ(bytes_of(sidecar), text);
+  EXPECT_EQ(vertex_levels_, 0);  // nothing was computed
+  EXPECT_EQ(states(), States{kUpToDate});
 }
 
 /// The id of a process that has just ended.

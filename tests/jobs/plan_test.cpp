@@ -3,14 +3,17 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
 #include <set>
 
 #include "engine/run_context.hpp"
+#include "io/dataset.hpp"
 #include "io/error.hpp"
 #include "io/file_digest.hpp"
+#include "io/xdmf.hpp"
 #include "jobs/stages/surface_job.hpp"
 #include "tests/support/scan_file.hpp"
 #include "tests/support/shapes.hpp"
@@ -170,16 +173,37 @@ TEST_F(FindScansTest, LongPathsGetShortNames) {
   for (const auto& name : found) EXPECT_LT(name.size(), 200u);
 }
 
-TEST_F(FindScansTest, TheSamePathInTwoFoldersGivesTwoNames) {
-  add("one/x/a.ply");
-  add("two/x/a.ply");
-  add("two/x/b.ply");
-  const auto found = find({folder_ / "one", folder_ / "two"});
+TEST_F(FindScansTest, SaysWhereAScanWasFoundAndWhichFileItIs) {
+  const fs::path real = add("in/deep/a b.ply");
+  fs::create_symlink(real, folder_ / "link.ply");
+  const auto in_folder = find({folder_ / "in/../in"});
+  ASSERT_EQ(in_folder.size(), 1u);
+  EXPECT_EQ(in_folder[0].relative, "deep/a b.ply");
+  EXPECT_EQ(in_folder[0].file, fs::canonical(real));
+  const auto alone = find({folder_ / "link.ply"});
+  ASSERT_EQ(alone.size(), 1u);
+  EXPECT_EQ(alone[0].relative, "link.ply");
+  EXPECT_EQ(alone[0].file, fs::canonical(real));
+}
+
+// One who may not look into a folder must not hide the others.
+TEST_F(FindScansTest, AFolderThatCannotBeSearchedIsNamedAndTheOthersAreSearched) {
+  for (const char* file : {"in/a.ply", "in/locked/b.ply", "in/z/c.ply"}) add(file);
+  fs::permissions(folder_ / "in/locked", fs::perms::none);
+  fs::permissions(folder_.path(), fs::perms(0755));
+  const bool root = geteuid() == 0;
+  if (root) ASSERT_EQ(seteuid(65534), 0);
+  const auto found = find({folder_ / "in"});
+  EXPECT_THROW(find({folder_ / "in/locked"}), io::Error);
+  if (root) ASSERT_EQ(seteuid(0), 0);
+  fs::permissions(folder_ / "in/locked", fs::perms::owner_all);
   ASSERT_EQ(found.size(), 3u);
-  EXPECT_EQ(found[0].name, "x__a.ply");
-  EXPECT_TRUE(found[1].name.starts_with("x__a.ply-")) << found[1].name;
-  EXPECT_EQ(found[1].input, folder_ / "two/x/a.ply");
-  EXPECT_EQ(found[2].name, "x__b.ply");
+  EXPECT_EQ(found[0].name, "a.ply");
+  EXPECT_EQ(found[1].name, "z__c.ply");
+  EXPECT_TRUE(found[0].error.empty());
+  EXPECT_EQ(found[2].input, folder_ / "in/locked");
+  EXPECT_TRUE(found[2].error.starts_with((folder_ / "in/locked").string() + ": cannot be searched"))
+      << found[2].error;
 }
 
 TEST_F(FindScansTest, InputsThatAreNoScansAreErrorsThatNameThem) {
@@ -226,7 +250,10 @@ class PlanJobsTest : public testing::Test {
     config_.surface.levels = 1;
   }
   void run_all() {
-    for (const PlannedJob& planned : plan_jobs(config_))
+    const auto plan = plan_jobs(config_);
+    fs::create_directories(folder_ / "archive/scans");
+    record_sources(config_.archive, plan);
+    for (const PlannedJob& planned : plan)
       if (!planned.up_to_date) run_surface_job(planned.job, config_.surface, context_);
   }
   /// The reasons why jobs run, "" for those that do not.
@@ -306,6 +333,69 @@ TEST_F(PlanJobsTest, ADamagedDatasetIsRunAgain) {
   EXPECT_EQ(reasons(), (Names{kDamaged, kDamaged}));
   run_all();
   EXPECT_EQ(reasons(), kBothUpToDate);
+}
+
+TEST_F(PlanJobsTest, AMissingSidecarIsNoticed) {
+  run_all();
+  fs::remove(folder_ / "archive/scans/b.obj.xdmf");
+  EXPECT_EQ(reasons(), (Names{"", "its .xdmf is missing"}));
+  EXPECT_TRUE(plan_jobs(config_)[1].sidecar_only);
+}
+
+TEST_F(PlanJobsTest, DamagedArraysAreFoundWhenAskedFor) {
+  run_all();
+  {
+    std::fstream file(folder_ / "archive/scans/b.obj.vtkhdf",
+                      std::ios::in | std::ios::out | std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    const std::size_t stream = bytes.find("\x78\x01");  // the first chunk that is deflated
+    ASSERT_NE(stream, std::string::npos);
+    file.seekp(static_cast<std::streamoff>(stream + 12));
+    file.put(static_cast<char>(bytes[stream + 12] ^ 1));
+  }
+  auto plan = plan_jobs(config_);
+  EXPECT_EQ(reasons(), kBothUpToDate);
+  verify_plan(plan, 2);
+  EXPECT_TRUE(plan[0].up_to_date);
+  EXPECT_FALSE(plan[1].up_to_date);
+  EXPECT_FALSE(plan[1].sidecar_only);
+  EXPECT_EQ(plan[1].reason, "its arrays are damaged");
+
+  std::ofstream(folder_ / "archive/scans/a.obj.xdmf") << "<Xdmf>";
+  plan = plan_jobs(config_);
+  verify_plan(plan, 2);
+  EXPECT_TRUE(plan[0].sidecar_only);
+  EXPECT_EQ(plan[0].reason, "its .xdmf is damaged");
+}
+
+TEST_F(PlanJobsTest, ScansOfTheSameNameInTwoRunsGetTwoDatasets) {
+  run_all();
+  fs::create_directories(folder_ / "other");
+  tests::write_obj(folder_ / "other/a.obj", shapes::cube(1, 3));
+  config_.inputs = {folder_ / "other"};
+  EXPECT_EQ(reasons(), Names{kMissing});
+  const std::string name = plan_jobs(config_)[0].job.name;
+  EXPECT_TRUE(name.starts_with("a.obj--")) << name;
+  run_all();
+  EXPECT_EQ(reasons(), Names{""});
+  config_.inputs = {folder_ / "other", folder_ / "in"};
+  EXPECT_EQ(reasons(), (Names{"", "", ""}));
+  // Scans that move take their datasets with them.
+  fs::rename(folder_ / "in", folder_ / "moved");
+  fs::rename(folder_ / "other", folder_ / "zother");
+  config_.inputs = {folder_ / "zother", folder_ / "moved"};
+  EXPECT_EQ(reasons(), (Names{"", "", ""}));
+}
+
+TEST_F(PlanJobsTest, NamesThatAreNoUtf8AreDescribedAsUtf8) {
+  fs::create_directories(folder_ / "in/bad\xff");
+  tests::write_obj(folder_ / "in/bad\xff/c.obj", shapes::cube(1, 2));
+  run_all();
+  const auto plan = plan_jobs(config_);
+  ASSERT_EQ(plan.size(), 3u);
+  EXPECT_TRUE(plan[2].up_to_date);
+  EXPECT_EQ(io::Dataset(plan[2].job.output).header().input_name, "bad\uFFFD/c.obj");
+  EXPECT_EQ(io::Dataset(plan[0].job.output).header().input_name, "a.obj");
 }
 
 TEST_F(PlanJobsTest, AnUnreadableScanIsPlannedWithItsError) {

@@ -27,6 +27,19 @@ TEST(ProgressTest, ShortDurations) {
   EXPECT_EQ(short_duration(7500), "2 h 05 min");
 }
 
+TEST(ProgressTest, ALineFitsIntoAnyWidth) {
+  const std::string counts = "1 done, 0 failed, 12 left";
+  const std::string name = "vases__krug__a_rather_long_name.ply";
+  EXPECT_EQ(progress_line(counts, name, 100), counts + ", " + name);
+  EXPECT_EQ(progress_line(counts, name, counts.size() + 2 + name.size()), counts + ", " + name);
+  EXPECT_EQ(progress_line(counts, name, counts.size() + 2 + 13), counts + ", vases...e.ply");
+  EXPECT_EQ(progress_line(counts, name, counts.size() + 5), counts);
+  EXPECT_EQ(progress_line(counts, "a.ply", counts.size() + 7), counts + ", a.ply");
+  EXPECT_EQ(progress_line(counts, name, 6), "1 done");
+  for (std::size_t width = 0; width < 80; ++width)
+    EXPECT_LE(progress_line(counts, name, width).size(), width);
+}
+
 TEST(ProgressTest, AddsUpWorkOfAllThreads) {
   Progress progress(1, 100);
   std::vector<std::jthread> threads;

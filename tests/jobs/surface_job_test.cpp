@@ -33,6 +33,7 @@ class SurfaceJobTest : public testing::Test {
   SurfaceJob job_for(const fs::path& input, const SurfaceParameters& parameters = {}) {
     SurfaceJob job;
     job.input = input;
+    job.input_name = "folder/" + input.filename().string();
     job.name = "name of " + input.filename().string();
     job.output = folder_ / "scan.vtkhdf";
     job.input_xxh3 = io::xxh3_of_file(input);
@@ -78,7 +79,7 @@ TEST_F(SurfaceJobTest, DatasetOfASphere) {
   dataset.verify();
   const io::DatasetHeader& header = dataset.header();
   EXPECT_EQ(header.parameters_json, to_json(parameters));
-  EXPECT_EQ(header.input_name, job.name);
+  EXPECT_EQ(header.input_name, job.input_name);
   EXPECT_EQ(header.input_xxh3, job.input_xxh3);
   EXPECT_EQ(header.job_key, job.key);
   EXPECT_EQ(header.length_unit, "mm");

@@ -1,0 +1,100 @@
+#include "jobs/verification.hpp"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <system_error>
+#include <thread>
+
+#include "io/dataset.hpp"
+#include "io/error.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A process that verifies one dataset, and the end of the pipe that tells what it found.
+struct Child {
+  pid_t process = -1;
+  int findings = -1;
+};
+
+std::string problem_of(const fs::path& dataset) {
+  try {
+    io::Dataset(dataset).verify();
+    return "";
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+}
+
+[[noreturn]] void verify_and_exit(const fs::path& dataset, int findings) {
+  // What the C library says of a crash is no sentence.
+  const int nowhere = open("/dev/null", O_WRONLY);
+  if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);
+  const std::string problem = problem_of(dataset);
+  for (std::size_t at = 0; at < problem.size();) {
+    const ssize_t written = write(findings, problem.data() + at, problem.size() - at);
+    if (written < 0 && errno != EINTR) _exit(2);
+    at += std::max<ssize_t>(written, 0);
+  }
+  _exit(0);
+}
+
+[[noreturn]] void fail(const char* action) {
+  throw std::system_error(errno, std::generic_category(), action);
+}
+
+Child start(const fs::path& dataset) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) fail("cannot make a pipe");
+  const pid_t process = fork();
+  if (process == 0) verify_and_exit(dataset, ends[1]);
+  close(ends[1]);
+  if (process < 0) {
+    close(ends[0]);
+    fail("cannot start a process");
+  }
+  return {process, ends[0]};
+}
+
+std::string result_of(const Child& child, const fs::path& dataset) {
+  std::string problem;
+  std::array<char, 4096> buffer;
+  for (;;) {
+    const ssize_t count = read(child.findings, buffer.data(), buffer.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) break;
+    problem.append(buffer.data(), static_cast<std::size_t>(count));
+  }
+  close(child.findings);
+  int status = 0;
+  while (waitpid(child.process, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return problem;
+  return io::Error(dataset, "", "it is damaged so that HDF5 crashes over it",
+                   "remove it and run again, or run with --verify")
+      .what();
+}
+
+}  // namespace
+
+std::vector<std::string> verify_datasets(const std::vector<fs::path>& datasets, int at_once) {
+  const auto cores = static_cast<int>(std::thread::hardware_concurrency());
+  const std::size_t most = std::max(at_once > 0 ? at_once : cores, 1);
+  std::vector<Child> children;
+  std::vector<std::string> problems;
+  for (std::size_t i = 0; i < datasets.size(); ++i) {
+    while (children.size() < std::min(i + most, datasets.size()))
+      children.push_back(start(datasets[children.size()]));
+    problems.push_back(result_of(children[i], datasets[i]));
+  }
+  return problems;
+}
+
+}  // namespace semigeo::jobs
