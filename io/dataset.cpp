@@ -76,6 +76,7 @@ Dataset::Dataset(const std::filesystem::path& path) : file_(Hdf5File::open(path)
   if (levels.empty() || levels.size() > kMostLevels)
     file_.refuse("/levels", "must hold 1 to " + std::to_string(kMostLevels) + " levels");
   level_count_ = static_cast<int>(levels.size());
+  principal_ = file_.has(level_path(0) + "/principal_curvature_1");
   for (int k = 0; k < level_count_; ++k)
     if ("/levels/" + levels[k].name != level_path(k))
       file_.refuse("/levels", "its levels are not numbered from 000 without gaps");
@@ -99,6 +100,7 @@ LevelInfo Dataset::level(int level) const {
   info.vertices = file_.open_array(path + "/points").shape().rows;
   info.triangles = file_.open_array(path + "/triangles").shape().rows;
   for (const LevelArray& array : kLevelArrays) {
+    if (array.principal && !principal_) continue;
     const std::string name = path + "/" + array.name;
     const ArrayShape shape = file_.open_array(name).shape();
     if (shape.type != array.type || shape.columns != array.columns ||

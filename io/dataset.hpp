@@ -32,6 +32,8 @@ class Dataset {
   const std::string& digest() const { return digest_; }
 
   int level_count() const { return level_count_; }
+  /// Whether its levels have principal curvatures and directions.
+  bool has_principal() const { return principal_; }
   /// Attributes and sizes; Error if an array is missing or does not fit the others.
   LevelInfo level(int level) const;
 
@@ -52,6 +54,7 @@ class Dataset {
   std::string creator_version_;
   std::string digest_;
   int level_count_ = 0;
+  bool principal_ = false;
 };
 
 /// The job key of a complete dataset; nothing if the file is absent, unreadable or incomplete.

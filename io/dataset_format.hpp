@@ -41,16 +41,21 @@ struct LevelArray {
   int columns;
   bool per_triangle;
   bool connectivity;  ///< shared by the levels until one brings its own
+  bool principal;     ///< only where principal curvatures were asked for
 };
-inline constexpr std::array<LevelArray, 8> kLevelArrays = {{
-    {"points", ElementType::float32, 3, false, false},
-    {"normals", ElementType::float32, 3, false, false},
-    {"gaussian_curvature", ElementType::float32, 1, false, false},
-    {"mean_curvature", ElementType::float32, 1, false, false},
-    {"patch_completeness", ElementType::float32, 1, false, false},
-    {"triangles", ElementType::int64, 3, true, true},
-    {"source_vertex", ElementType::int64, 1, false, true},
-    {"part", ElementType::int32, 1, false, true},
+inline constexpr std::array<LevelArray, 12> kLevelArrays = {{
+    {"points", ElementType::float32, 3, false, false, false},
+    {"normals", ElementType::float32, 3, false, false, false},
+    {"gaussian_curvature", ElementType::float32, 1, false, false, false},
+    {"mean_curvature", ElementType::float32, 1, false, false, false},
+    {"patch_completeness", ElementType::float32, 1, false, false, false},
+    {"principal_curvature_1", ElementType::float32, 1, false, false, true},
+    {"principal_curvature_2", ElementType::float32, 1, false, false, true},
+    {"principal_direction_1", ElementType::float32, 3, false, false, true},
+    {"principal_direction_2", ElementType::float32, 3, false, false, true},
+    {"triangles", ElementType::int64, 3, true, true, false},
+    {"source_vertex", ElementType::int64, 1, false, true, false},
+    {"part", ElementType::int32, 1, false, true, false},
 }};
 
 /// "/levels/007".

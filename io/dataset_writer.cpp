@@ -88,11 +88,24 @@ void DatasetWriter::write_level(const LevelAttributes& attributes, const Encoded
   write(level, format_of("gaussian_curvature"), fields.gaussian_curvature, vertices_);
   write(level, format_of("mean_curvature"), fields.mean_curvature, vertices_);
   write(level, format_of("patch_completeness"), fields.patch_completeness, vertices_);
+  if (!steps_.empty() && steps_.front().principal != fields.principal.has_value())
+    throw std::invalid_argument("all levels have principal curvatures or none");
+  if (fields.principal) {
+    write(level, format_of("principal_curvature_1"), fields.principal->curvature_1, vertices_);
+    write(level, format_of("principal_curvature_2"), fields.principal->curvature_2, vertices_);
+    write(level, format_of("principal_direction_1"), fields.principal->direction_1, vertices_);
+    write(level, format_of("principal_direction_2"), fields.principal->direction_2, vertices_);
+  }
   if (!connectivity_pending_)
     for (const LevelArray& array : kLevelArrays)
       if (array.connectivity)
         file_.link(connectivity_level_ + "/" + array.name, level + "/" + array.name);
-  steps_.push_back({attributes.scale, level, vertices_, triangles_, connectivity_pending_});
+  steps_.push_back({.value = attributes.scale,
+                    .level = level,
+                    .vertices = vertices_,
+                    .triangles = triangles_,
+                    .new_connectivity = connectivity_pending_,
+                    .principal = fields.principal.has_value()});
   connectivity_pending_ = false;
   level_begun_ = false;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "io/atomic_file.hpp"
@@ -17,6 +18,14 @@ struct EncodedConnectivity {
   EncodedArray part;           ///< int32 (N): connected part
 };
 
+/// Principal curvatures k1 >= k2, in length^-1, and their unit directions.
+struct EncodedPrincipal {
+  EncodedArray curvature_1;  ///< float32 (N)
+  EncodedArray curvature_2;
+  EncodedArray direction_1;  ///< float32 (N, 3)
+  EncodedArray direction_2;
+};
+
 /// What each level has of its own.
 struct EncodedFields {
   EncodedArray points;              ///< float32 (N, 3), relative to the header's origin
@@ -24,6 +33,7 @@ struct EncodedFields {
   EncodedArray gaussian_curvature;  ///< float32 (N), length^-2
   EncodedArray mean_curvature;      ///< float32 (N), length^-1
   EncodedArray patch_completeness;  ///< float32 (N), 1 = whole patch, 0 = invalid
+  std::optional<EncodedPrincipal> principal = {};  ///< in every level or in none
 };
 
 /// Writes one dataset (io/DATASET.md), which appears under its final name whole and verified or

@@ -42,7 +42,7 @@ void add_views(VtkhdfLayout& layout, std::span<const VtkhdfStep> steps, std::siz
   for (const VtkhdfStep& step : steps)
     points.pieces.push_back({step.level + "/points", step.vertices});
   layout.views["Points"] = std::move(points);
-  for (const VtkhdfPointArray& array : kVtkhdfPointArrays) {
+  for (const VtkhdfPointArray& array : point_arrays_of(steps.front())) {
     VtkhdfLayout::View view{array.type, array.columns, {}};
     for (const VtkhdfStep& step : steps)
       view.pieces.push_back({step.level + "/" + array.source, step.vertices});
@@ -88,6 +88,13 @@ void create_groups(DigestedFile& file, const VtkhdfLayout& layout) {
 
 }  // namespace
 
+std::vector<VtkhdfPointArray> point_arrays_of(const VtkhdfStep& step) {
+  std::vector<VtkhdfPointArray> arrays;
+  for (const VtkhdfPointArray& array : kVtkhdfPointArrays)
+    if (step.principal || !array.principal) arrays.push_back(array);
+  return arrays;
+}
+
 VtkhdfLayout vtkhdf_layout(std::span<const VtkhdfStep> steps) {
   const bool changes = std::any_of(steps.begin() + 1, steps.end(),
                                    [](const VtkhdfStep& step) { return step.new_connectivity; });
@@ -119,7 +126,7 @@ VtkhdfLayout vtkhdf_layout(std::span<const VtkhdfStep> steps) {
   tables["Steps/PointOffsets"] = {1, starts(vertices)};
   tables["Steps/CellOffsets"] = polygon_column(first_cell);
   tables["Steps/ConnectivityIdOffsets"] = polygon_column(first_corner);
-  for (const VtkhdfPointArray& array : kVtkhdfPointArrays)
+  for (const VtkhdfPointArray& array : point_arrays_of(steps.front()))
     tables[std::string("Steps/PointDataOffsets/") + array.name] = {1, starts(vertices)};
   tables["Polygons/NumberOfCells"] = {1, layout.triangles_of_part};
   tables["Polygons/NumberOfConnectivityIds"] = {1, corners};

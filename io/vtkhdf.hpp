@@ -18,6 +18,7 @@ struct VtkhdfStep {
   std::int64_t vertices = 0;
   std::int64_t triangles = 0;
   bool new_connectivity = false;  ///< its triangles are not those of the step before
+  bool principal = false;         ///< it has principal curvatures; as all steps or none
 };
 
 /// A per-vertex array of a level and its name in /VTKHDF/PointData.
@@ -26,15 +27,23 @@ struct VtkhdfPointArray {
   const char* source;
   ElementType type;
   int columns;
+  bool principal;  ///< only where the steps have principal curvatures
 };
-inline constexpr std::array<VtkhdfPointArray, 6> kVtkhdfPointArrays = {{
-    {"Normals", "normals", ElementType::float32, 3},
-    {"gaussian_curvature", "gaussian_curvature", ElementType::float32, 1},
-    {"mean_curvature", "mean_curvature", ElementType::float32, 1},
-    {"patch_completeness", "patch_completeness", ElementType::float32, 1},
-    {"part", "part", ElementType::int32, 1},
-    {"source_vertex", "source_vertex", ElementType::int64, 1},
+inline constexpr std::array<VtkhdfPointArray, 10> kVtkhdfPointArrays = {{
+    {"Normals", "normals", ElementType::float32, 3, false},
+    {"gaussian_curvature", "gaussian_curvature", ElementType::float32, 1, false},
+    {"mean_curvature", "mean_curvature", ElementType::float32, 1, false},
+    {"patch_completeness", "patch_completeness", ElementType::float32, 1, false},
+    {"part", "part", ElementType::int32, 1, false},
+    {"source_vertex", "source_vertex", ElementType::int64, 1, false},
+    {"principal_curvature_1", "principal_curvature_1", ElementType::float32, 1, true},
+    {"principal_curvature_2", "principal_curvature_2", ElementType::float32, 1, true},
+    {"principal_direction_1", "principal_direction_1", ElementType::float32, 3, true},
+    {"principal_direction_2", "principal_direction_2", ElementType::float32, 3, true},
 }};
+
+/// Those of the arrays that a step has.
+std::vector<VtkhdfPointArray> point_arrays_of(const VtkhdfStep& step);
 
 /// Everything that /VTKHDF holds, planned before any of it is written.
 struct VtkhdfLayout {

@@ -57,7 +57,7 @@ std::string grid(const std::string& dataset, const VtkhdfStep& step) {
       "        </Topology>\n        <Geometry GeometryType=\"XYZ\">\n" +
       data_item(dataset, step.level + "/points", ElementType::float32, step.vertices, 3) +
       "        </Geometry>\n";
-  for (const VtkhdfPointArray& array : kVtkhdfPointArrays)
+  for (const VtkhdfPointArray& array : point_arrays_of(step))
     text += std::string("        <Attribute Name=\"") + array.name + "\" AttributeType=\"" +
             (array.columns == 3 ? "Vector" : "Scalar") + "\" Center=\"Node\">\n" +
             data_item(dataset, step.level + "/" + array.source, array.type, step.vertices,
@@ -87,7 +87,12 @@ std::string sidecar_text(const std::filesystem::path& dataset) {
   std::vector<VtkhdfStep> steps;
   for (int k = 0; k < source.level_count(); ++k) {
     const LevelInfo level = source.level(k);
-    steps.push_back({level.scale, level_path(k), level.vertices, level.triangles, k == 0});
+    steps.push_back({.value = level.scale,
+                     .level = level_path(k),
+                     .vertices = level.vertices,
+                     .triangles = level.triangles,
+                     .new_connectivity = k == 0,
+                     .principal = source.has_principal()});
   }
   return xdmf_text(dataset.filename().string(), steps);
 }

@@ -5,13 +5,18 @@
 namespace semigeo::jobs {
 
 std::string to_json(const SurfaceParameters& parameters) {
+  const EvolutionOptions& evolution = parameters.evolution;
+  const bool polar = evolution.coordinates == kernels::Coordinates::polar;
   // nlohmann's object is an ordered map: keys come out sorted.
   return nlohmann::json{
       {"compression", parameters.compression == io::Compression::deflate ? "deflate" : "none"},
+      {"coordinates", polar ? "polar" : "semigeodesic"},
       {"length_unit", parameters.length_unit},
       {"levels", parameters.levels},
-      {"step", parameters.step},
-      {"surface", parameters.curved ? "curved" : "flat"}}
+      {"principal", evolution.principal},
+      {"schedule", evolution.schedule == Schedule::octaves ? "octaves" : "uniform"},
+      {"step", evolution.step_factor},
+      {"surface", evolution.curved ? "curved" : "flat"}}
       .dump();
 }
 

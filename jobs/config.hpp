@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "io/chunk_codec.hpp"
+#include "jobs/stages/evolving_surface.hpp"
 
 namespace semigeo::jobs {
 
 /// Everything besides the scan itself that a dataset's content depends on.
 struct SurfaceParameters {
-  int levels = 8;      ///< smoothing iterations; the dataset has levels + 1 levels
-  bool curved = true;  ///< sample quadratic faces rather than flat ones
-  double step = 1;     ///< sample distance of the patches, in mean edge lengths
+  int levels = 8;  ///< smoothing iterations; the dataset has levels + 1 levels
+  EvolutionOptions evolution = {};
   io::Compression compression = io::Compression::deflate;
   std::string length_unit = "unknown";
 };

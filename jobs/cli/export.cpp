@@ -23,6 +23,9 @@ int export_level(const ExportOptions& options) {
         options.dataset, "level " + std::to_string(options.level),
         "does not exist; there are " + std::to_string(dataset.level_count()) + " levels",
         "give --level 0 to " + std::to_string(dataset.level_count() - 1));
+  if (options.quality.starts_with("principal") && !dataset.has_principal())
+    throw io::Error(options.dataset, "", "has no principal curvatures",
+                    "run with --principal, or export another --quality");
   const auto points = dataset.read_floats(options.level, "points");
   const auto normals = dataset.read_floats(options.level, "normals");
   const auto triangles = dataset.read_integers(options.level, "triangles");
@@ -57,7 +60,8 @@ void add_export(CLI::App& app, int& exit_code) {
   command->add_option("--level", options->level, "Scale level")->check(CLI::Range(0, 999));
   command->add_option("-o,--output", options->output, "The PLY file to write")->required();
   command->add_option("--quality", options->quality, "Field that becomes `quality`")
-      ->check(CLI::IsMember({"gaussian_curvature", "mean_curvature", "patch_completeness"}));
+      ->check(CLI::IsMember({"gaussian_curvature", "mean_curvature", "patch_completeness",
+                             "principal_curvature_1", "principal_curvature_2"}));
   command->callback([options, &exit_code] { exit_code = export_level(*options); });
 }
 

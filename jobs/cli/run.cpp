@@ -20,9 +20,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Levels at most under --schedule octaves: then a patch reaches over a thousand edges.
+constexpr int kMostOctaveLevels = 16;
+
 struct RunOptions {
   RunConfig config;
   std::string surface = "curved";
+  std::string coordinates = "semigeodesic";
+  std::string schedule = "uniform";
   std::string compression = "deflate";
   bool json = false;
   bool dry_run = false;
@@ -241,10 +246,12 @@ std::string config_text(const RunOptions& options) {
   const SurfaceParameters& p = options.config.surface;
   std::snprintf(text, sizeof text,
                 "# Effective configuration; use it again with --config.\n"
-                "[run]\nlevels = %d\nsurface = \"%s\"\nstep = %.17g\ncompression = \"%s\"\n"
+                "[run]\nlevels = %d\nsurface = \"%s\"\ncoordinates = \"%s\"\nschedule = \"%s\"\n"
+                "principal = %s\nstep = %.17g\ncompression = \"%s\"\n"
                 "unit = \"%s\"\n",
-                p.levels, options.surface.c_str(), p.step, options.compression.c_str(),
-                p.length_unit.c_str());
+                p.levels, options.surface.c_str(), options.coordinates.c_str(),
+                options.schedule.c_str(), p.evolution.principal ? "true" : "false",
+                p.evolution.step_factor, options.compression.c_str(), p.length_unit.c_str());
   return text;
 }
 
@@ -282,7 +289,20 @@ void add_run(CLI::App& app, int& exit_code) {
       ->add_option("--surface", options->surface,
                    "What patches sample: quadratic faces, or flat ones as in the thesis")
       ->check(CLI::IsMember({"curved", "flat"}));
-  command->add_option("--step", surface.step, "Sample distance of patches, in mean edge lengths")
+  command
+      ->add_option("--coordinates", options->coordinates,
+                   "How patches are laid: a base line and its perpendiculars, or rays")
+      ->check(CLI::IsMember({"semigeodesic", "polar"}));
+  command
+      ->add_option("--schedule", options->schedule,
+                   "Sample distance from level to level: the same, as in the thesis, or growing\n"
+                   "with the scale reached, so that two levels double it")
+      ->check(CLI::IsMember({"uniform", "octaves"}));
+  command->add_flag("--principal", surface.evolution.principal,
+                    "Store principal curvatures and their directions as well");
+  command
+      ->add_option("--step", surface.evolution.step_factor,
+                   "Sample distance of patches at level 0, in mean edge lengths")
       ->check(CLI::Range(0.05, 20.0))
       ->check(refuse_nan);
   command->add_option("--compression", options->compression, "Of the stored arrays")
@@ -305,7 +325,18 @@ void add_run(CLI::App& app, int& exit_code) {
       ->configurable(false);
   command->fallthrough();
   command->callback([options, &exit_code] {
-    options->config.surface.curved = options->surface == "curved";
+    SurfaceParameters& parameters = options->config.surface;
+    parameters.evolution.curved = options->surface == "curved";
+    if (options->coordinates == "polar")
+      parameters.evolution.coordinates = kernels::Coordinates::polar;
+    if (options->schedule == "octaves") {
+      parameters.evolution.schedule = Schedule::octaves;
+      if (parameters.levels > kMostOctaveLevels)
+        throw CLI::ValidationError("--levels",
+                                   "two levels of --schedule octaves double the scale; "
+                                   "give at most " +
+                                       std::to_string(kMostOctaveLevels));
+    }
     options->config.surface.compression =
         options->compression == "deflate" ? io::Compression::deflate : io::Compression::none;
     exit_code = run(*options, config_text(*options));

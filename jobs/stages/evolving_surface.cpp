@@ -169,7 +169,8 @@ LevelFields EvolvingSurface::advance(bool move) {
   fields.mean_curvature.resize(n);
   fields.patch_completeness.resize(n);
   if (options_.principal) {
-    fields.principal_curvatures.resize(n);
+    fields.principal_curvature_1.resize(n);
+    fields.principal_curvature_2.resize(n);
     fields.principal_direction_1.resize(n);
     fields.principal_direction_2.resize(n);
   }
@@ -189,7 +190,8 @@ LevelFields EvolvingSurface::advance(bool move) {
       fields.mean_curvature[v] = e.mean_curvature * per_length;
       fields.patch_completeness[v] = e.patch_completeness;
       if (options_.principal) {
-        fields.principal_curvatures[v] = {e.principal.k1 * per_length, e.principal.k2 * per_length};
+        fields.principal_curvature_1[v] = e.principal.k1 * per_length;
+        fields.principal_curvature_2[v] = e.principal.k2 * per_length;
         fields.principal_direction_1[v] = e.principal.first;
         fields.principal_direction_2[v] = e.principal.second;
       }

@@ -19,7 +19,8 @@ struct LevelFields {
   std::vector<float> mean_curvature;
   std::vector<float> patch_completeness;
   /// If asked for: k1 >= k2, and their directions, unit or zero.
-  std::vector<std::array<float, 2>> principal_curvatures;
+  std::vector<float> principal_curvature_1;
+  std::vector<float> principal_curvature_2;
   std::vector<Eigen::Vector3f> principal_direction_1;
   std::vector<Eigen::Vector3f> principal_direction_2;
   double step = 0;   ///< sample distance of the patches

@@ -103,6 +103,17 @@ io::EncodedFields encode_fields(const LevelFields& fields, io::RowOrder order,
   encoder.add(io::array_of(std::span(fields.mean_curvature), order), encoded.mean_curvature);
   encoder.add(io::array_of(std::span(fields.patch_completeness), order),
               encoded.patch_completeness);
+  if (!fields.principal_direction_1.empty()) {
+    io::EncodedPrincipal& principal = encoded.principal.emplace();
+    encoder.add(io::array_of(std::span(fields.principal_curvature_1), order),
+                principal.curvature_1);
+    encoder.add(io::array_of(std::span(fields.principal_curvature_2), order),
+                principal.curvature_2);
+    encoder.add(io::array_of(std::span(fields.principal_direction_1), order),
+                principal.direction_1);
+    encoder.add(io::array_of(std::span(fields.principal_direction_2), order),
+                principal.direction_2);
+  }
   encoder.run();
   return encoded;
 }
@@ -214,8 +225,7 @@ SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters&
     surface = kernels::reordered(built.surface, order);
     stored_order = inverse(order);
   }
-  EvolvingSurface evolving(std::move(surface),
-                           {.curved = parameters.curved, .step_factor = parameters.step}, context);
+  EvolvingSurface evolving(std::move(surface), parameters.evolution, context);
   write_levels(evolving, stored_order, parameters, result.parts, *writer, context);
   writer->finish();
   return result;

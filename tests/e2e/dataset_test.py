@@ -30,8 +30,9 @@ class SphereDatasetTest(SemigeoTest):
         self.assertEqual(attributes["length_unit"], b"mm")
         self.assertEqual(attributes["complete"], 1)
         self.assertEqual(json.loads(attributes["parameters"]),
-                         {"compression": "deflate", "length_unit": "mm", "levels": LEVELS,
-                          "step": 1.0, "surface": "curved"})
+                         {"compression": "deflate", "coordinates": "semigeodesic",
+                          "length_unit": "mm", "levels": LEVELS, "principal": False,
+                          "schedule": "uniform", "step": 1.0, "surface": "curved"})
         for name in ("input_xxh3", "digest", "job_key"):
             self.assertEqual(len(attributes[name]), 32, name)
 
@@ -42,14 +43,12 @@ class SphereDatasetTest(SemigeoTest):
 
     def test_curvature_is_that_of_the_sphere(self):
         for level in self.levels:
-            # What smoothing over one step makes of a sphere: a bias of about step^2 / r^2.
-            bias = (level.attrs["step"] / RADIUS) ** 2
             gaussian = level["gaussian_curvature"][...] * RADIUS ** 2
             mean = level["mean_curvature"][...] * RADIUS
-            self.assertLess(abs(np.median(gaussian) - 1), 1.2 * bias)
-            self.assertLess(abs(np.median(mean) + 1), 0.6 * bias)
-            self.assertLess(np.abs(gaussian - 1).max(), 0.02)
-            self.assertLess(np.abs(mean + 1).max(), 0.01)
+            self.assertLess(abs(np.median(gaussian) - 1), 1e-3)
+            self.assertLess(abs(np.median(mean) + 1), 5e-4)
+            self.assertLess(np.abs(gaussian - 1).max(), 0.005)
+            self.assertLess(np.abs(mean + 1).max(), 0.003)
             np.testing.assert_array_equal(level["patch_completeness"], 1)
             radii = np.linalg.norm(level["points"], axis=1)
             np.testing.assert_allclose(radii, RADIUS, rtol=1e-3)
@@ -62,6 +61,46 @@ class SphereDatasetTest(SemigeoTest):
         np.testing.assert_allclose(scales, step * np.sqrt(np.arange(LEVELS + 1) + 1), rtol=1e-3)
         self.assertEqual([level.attrs["iteration"] for level in self.levels],
                          list(range(LEVELS + 1)))
+
+
+class OptionsDatasetTest(SemigeoTest):
+    def levels(self, *options):
+        write_ply(self.scans / "sphere.ply", icosphere(4, RADIUS))
+        self.run_scans("--levels", LEVELS, *options)
+        file = h5py.File(self.dataset("sphere.ply"), "r")
+        self.addCleanup(file.close)
+        return [file[f"levels/{k:03d}"] for k in range(LEVELS + 1)]
+
+    def test_octaves_double_the_scale_in_two_levels(self):
+        levels = self.levels("--schedule", "octaves")
+        step = levels[0].attrs["step"]
+        np.testing.assert_allclose([level.attrs["scale"] / step for level in levels],
+                                   [1, 2 ** 0.5, 2, 2 ** 1.5], rtol=5e-3)
+        np.testing.assert_allclose([level.attrs["step"] / step for level in levels],
+                                   [1, 1, 2 ** 0.5, 2], rtol=5e-3)
+        radii = [np.linalg.norm(level["points"], axis=1).mean() for level in levels]
+        self.assertTrue(np.all(np.diff(radii) < 0))  # nothing is rescaled
+
+    def test_too_many_octaves_are_refused(self):
+        process = self.semigeo("run", self.scans, "--output", self.archive, "--levels", 17,
+                               "--schedule", "octaves", code=2)
+        self.assertIn("at most 16", process.stderr)
+
+    def test_polar_patches_see_the_same_sphere(self):
+        for level in self.levels("--coordinates", "polar"):
+            self.assertLess(abs(np.median(level["mean_curvature"]) * RADIUS + 1), 1e-3)
+
+    def test_principal_curvatures_and_directions(self):
+        for level in self.levels("--principal"):
+            for name in ("principal_curvature_1", "principal_curvature_2"):
+                self.assertLess(np.abs(level[name][...] * RADIUS + 1).max(), 0.02)
+            first, second = level["principal_direction_1"], level["principal_direction_2"]
+            np.testing.assert_allclose(np.linalg.norm(first, axis=1), 1, rtol=1e-5)
+            np.testing.assert_allclose(np.cross(first, second), level["normals"], atol=0.01)
+        process = self.semigeo("export", self.dataset("sphere.ply"), "--quality",
+                               "principal_curvature_2", "--output", self.folder / "k2.ply")
+        self.assertIn("principal_curvature_2", process.stdout)
+        self.assertIn("1 checked, 0 broken", self.semigeo("check", self.archive).stdout)
 
 
 class SeveralPartsDatasetTest(SemigeoTest):

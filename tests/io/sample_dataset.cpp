@@ -40,8 +40,12 @@ io::EncodedFields encode_fields(const SampleLevel& level, io::Compression compre
   const auto encode = [&](const auto& values) {
     return io::encode_array(io::array_of(std::span(values)), compression);
   };
-  return {encode(level.points), encode(level.normals), encode(level.gaussian_curvature),
-          encode(level.mean_curvature), encode(level.patch_completeness)};
+  return {encode(level.points),
+          encode(level.normals),
+          encode(level.gaussian_curvature),
+          encode(level.mean_curvature),
+          encode(level.patch_completeness),
+          std::nullopt};
 }
 
 io::EncodedConnectivity encode_connectivity(const SampleLevel& level, io::Compression compression) {

@@ -44,6 +44,12 @@ inline EvolvedMesh evolve_mesh(kernels::TriangleMesh mesh, int smoothings,
     restore_order(fields.gaussian_curvature, order);
     restore_order(fields.mean_curvature, order);
     restore_order(fields.patch_completeness, order);
+    if (options.principal) {
+      restore_order(fields.principal_curvature_1, order);
+      restore_order(fields.principal_curvature_2, order);
+      restore_order(fields.principal_direction_1, order);
+      restore_order(fields.principal_direction_2, order);
+    }
     result.levels.push_back(std::move(fields));
   }
   return result;

@@ -231,8 +231,8 @@ TEST(JobKeyTest, ChangesWithEverythingThatTheContentDependsOn) {
   EXPECT_TRUE(is_new(job_key("b.ply", "1234", {})));
   EXPECT_TRUE(is_new(job_key("a.ply", "1235", {})));
   EXPECT_TRUE(is_new(job_key("a.ply", "1234", {.levels = 9})));
-  EXPECT_TRUE(is_new(job_key("a.ply", "1234", {.curved = false})));
-  EXPECT_TRUE(is_new(job_key("a.ply", "1234", {.step = 1.0000001})));
+  EXPECT_TRUE(is_new(job_key("a.ply", "1234", {.evolution = {.curved = false}})));
+  EXPECT_TRUE(is_new(job_key("a.ply", "1234", {.evolution = {.step_factor = 1.0000001}})));
   EXPECT_TRUE(is_new(job_key("a.ply", "1234", {.compression = io::Compression::none})));
   EXPECT_TRUE(is_new(job_key("a.ply", "1234", {.length_unit = "mm"})));
   EXPECT_FALSE(is_new(job_key("a.ply", "1234", {})));
@@ -320,9 +320,9 @@ TEST_F(PlanJobsTest, AChangedScanIsRunAlone) {
 
 TEST_F(PlanJobsTest, AChangedParameterRunsAll) {
   run_all();
-  config_.surface.step = 1.5;
+  config_.surface.evolution.step_factor = 1.5;
   EXPECT_EQ(reasons(), (Names{kChanged, kChanged}));
-  config_.surface.step = 1;
+  config_.surface.evolution.step_factor = 1;
   EXPECT_EQ(reasons(), kBothUpToDate);
 }
 

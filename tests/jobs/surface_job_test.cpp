@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -12,6 +14,7 @@
 #include "io/dataset.hpp"
 #include "io/error.hpp"
 #include "io/file_digest.hpp"
+#include "io/xdmf.hpp"
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/scan_file.hpp"
 #include "tests/support/shapes.hpp"
@@ -195,6 +198,40 @@ TEST_F(SurfaceJobTest, CompressionChangesTheFileButNoValue) {
   const io::Dataset plain(folder_ / "scan.vtkhdf"), packed(folder_ / "packed.vtkhdf");
   for (const char* name : {"points", "normals", "gaussian_curvature", "mean_curvature"})
     EXPECT_EQ(plain.read_floats(1, name), packed.read_floats(1, name)) << name;
+}
+
+TEST_F(SurfaceJobTest, PrincipalCurvaturesOnRequest) {
+  const fs::path input = scan(shapes::torus(1, 0.4, 60, 40, 0.3));
+  run(job_for(input), {.levels = 1});
+  EXPECT_FALSE(io::Dataset(folder_ / "scan.vtkhdf").has_principal());
+  EXPECT_THROW(io::Dataset(folder_ / "scan.vtkhdf").read_floats(0, "principal_curvature_1"),
+               io::Error);
+  run(job_for(input), {.levels = 1, .evolution = {.principal = true}});
+  const io::Dataset dataset(folder_ / "scan.vtkhdf");
+  dataset.verify();
+  ASSERT_TRUE(dataset.has_principal());
+  for (int k = 0; k < 2; ++k) {
+    const auto gaussian = dataset.read_floats(k, "gaussian_curvature");
+    const auto mean = dataset.read_floats(k, "mean_curvature");
+    const auto k1 = dataset.read_floats(k, "principal_curvature_1");
+    const auto k2 = dataset.read_floats(k, "principal_curvature_2");
+    const auto first = dataset.read_floats(k, "principal_direction_1");
+    const auto second = dataset.read_floats(k, "principal_direction_2");
+    const auto normals = dataset.read_floats(k, "normals");
+    for (std::size_t v = 0; v < k1.size(); ++v) {
+      EXPECT_GE(k1[v], k2[v]);
+      EXPECT_NEAR(k1[v] * k2[v], gaussian[v], 2e-4);
+      EXPECT_NEAR((k1[v] + k2[v]) / 2, mean[v], 2e-5);
+      const Eigen::Map<const Eigen::Vector3f> a(&first[3 * v]), b(&second[3 * v]),
+          n(&normals[3 * v]);
+      EXPECT_NEAR(a.norm(), 1, 1e-5);
+      EXPECT_NEAR(a.cross(b).dot(n), 1, 0.02);
+    }
+  }
+  std::ifstream sidecar(folder_ / "scan.xdmf");
+  const std::string text((std::istreambuf_iterator<char>(sidecar)), {});
+  EXPECT_NE(text.find("principal_direction_2"), std::string::npos);
+  EXPECT_EQ(text, io::sidecar_text(folder_ / "scan.vtkhdf"));
 }
 
 TEST_F(SurfaceJobTest, LevelZeroAlone) {
