@@ -98,7 +98,10 @@ Eigen::Vector3f direction_in_space(const GeodesicMesh& mesh, const Ray& ray) {
 Ray ray_from_vertex(const GeodesicMesh& mesh, std::int32_t v, const Eigen::Vector3f& direction) {
   constexpr float kOnPlane = 1e-6f;
   const Eigen::Vector3f p = mesh.point(v);
-  const Eigen::Vector3f right = direction.cross(mesh.normals[v]).normalized();
+  const Eigen::Vector3f& w = mesh.normals[v];
+  const Eigen::Vector3f right = direction.cross(w).normalized();
+  // Along the tangent plane: over a ridge of 90 degrees or less the way on is not ahead in space.
+  const Eigen::Vector3f forward = direction - direction.dot(w) * w;
   Ray best;
   Ray nearest_edge;
   float best_cosine = 0;
@@ -113,20 +116,20 @@ Ray ray_from_vertex(const GeodesicMesh& mesh, std::int32_t v, const Eigen::Vecto
     const Eigen::Vector3f c = mesh.point(mesh.origin(prev(h))) - p;
     const float side_c = right.dot(c);
     // Anticlockwise the plane's forward half is passed from its right to its left side.
-    const float slack = kOnPlane * (std::abs(side_b) + std::abs(side_c) + direction.dot(b + c));
+    const float slack = kOnPlane * (std::abs(side_b) + std::abs(side_c) + forward.dot(b + c));
     if (side_b >= -slack && side_c <= slack && side_b > side_c) {
       const float lambda = std::clamp(side_b / (side_b - side_c), 0.0f, 1.0f);
       const Eigen::Vector3f q = b + lambda * (c - b);  // Theorem 7: N(V) meets the opposite edge
       const float length = q.norm();
-      const float cosine = direction.dot(q) / length;
+      const float cosine = forward.dot(q) / length;
       if (cosine > best_cosine && length > 0) {
         best_cosine = cosine;
         best = {{h, 0, 0}, (1 - lambda) / length, lambda / length};
       }
     }
     const float length_b = b.norm();
-    if (direction.dot(b) > nearest_cosine * length_b) {
-      nearest_cosine = direction.dot(b) / length_b;
+    if (forward.dot(b) > nearest_cosine * length_b) {
+      nearest_cosine = forward.dot(b) / length_b;
       nearest_edge = {{h, 0, 0}, 1 / length_b, 0};
     }
     b = c;

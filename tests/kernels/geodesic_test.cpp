@@ -235,6 +235,39 @@ TEST(PerpendicularTest, InAFace_Figures5_8_5_9) {
   }
 }
 
+// Figure 5.8: the sample lies on an edge that the line crosses at a right angle, an acute or an
+// obtuse one. The edge is the ridge between two faces of a cube, so that one of the perpendiculars
+// has to be unfolded at once; in (a) both run along the ridge.
+TEST(PerpendicularTest, OnACrossedEdge_Figure5_8) {
+  const PreparedSurface s(shapes::cube(2, 4), false);
+  const GeodesicMesh mesh = s.mesh();
+  // The face y = 1 turned about the ridge into the plane of the face z = 1.
+  const auto unfolded = [&](const FacePoint& at) {
+    const Vector3f p = s.position(at);
+    return Eigen::Vector2f(p.x(), p.y() + (1 - p.z()));
+  };
+  for (const float degrees : {90.0f, 60.0f, 30.0f, 120.0f, 150.0f}) {
+    const float phi = degrees * std::numbers::pi_v<float> / 180;
+    const Eigen::Vector2f d(std::cos(phi), std::sin(phi));
+    const Eigen::Vector2f on_ridge(0.1f, 1);
+    const Eigen::Vector2f start = on_ridge - 0.4f * d;
+    GeodesicLine line(mesh, ray_at(s, {start.x(), start.y(), 1}, {d.x(), d.y(), 0}));
+    ASSERT_TRUE(line.advance(0.4f));
+    ASSERT_LT((unfolded(line.ray().at) - on_ridge).norm(), 1e-5f);
+    const Perpendiculars p = perpendiculars(mesh, line.ray());
+    const Eigen::Vector2f left(-d.y(), d.x());
+    for (const auto& [ray, side] :
+         {std::pair<Ray, Eigen::Vector2f>(p.left, left), {p.right, -left}}) {
+      GeodesicLine perpendicular(mesh, ray);
+      for (int i = 1; i <= 3; ++i) {
+        ASSERT_TRUE(perpendicular.advance(0.2f)) << degrees;
+        const Eigen::Vector2f expected = on_ridge + 0.2f * static_cast<float>(i) * side;
+        EXPECT_LT((unfolded(perpendicular.ray().at) - expected).norm(), 1e-3f) << degrees;
+      }
+    }
+  }
+}
+
 // Figure 5.9 (a): the line lies on an edge; left and right leave it through different faces.
 TEST(PerpendicularTest, OnAnEdge_Figure5_9a) {
   const PreparedSurface s(shapes::plane(8, 8), false);

@@ -60,6 +60,26 @@ TEST(PatchTest, CurvedSamplesLieOnTheSphere) {
   }
 }
 
+// Figure 5.4: the base line begins along an edge (u < 0) and goes on beyond its vertex in the plane
+// of that edge and W (u > 0). On a ridge W halves the angle, and the plane leads down the other
+// side.
+TEST(PatchTest, TheBaseLineGoesOnInTheNormalPlane_Figure5_4) {
+  const PreparedSurface s(shapes::cube(2, 4), false);
+  const GeodesicMesh m = s.mesh();
+  const std::int32_t v = s.nearest({0, 1, 1});
+  std::int32_t first = m.outgoing[v];
+  while ((m.point(m.origin(next(first))) - Vector3f(0, 0.5f, 1)).norm() > 1e-6f)
+    first = m.twin(prev(first));
+  Patch patch;
+  trace_patch(s.sampled(), v, first, 0.25f, patch);
+  ASSERT_TRUE(patch.whole());
+  for (int i = 1; i <= kReach; ++i) {
+    const float u = 0.25f * static_cast<float>(i);
+    EXPECT_LT((patch.sample[kReach - i][kReach].head<3>() - Vector3f(0, -u, 0)).norm(), 1e-4f);
+    EXPECT_LT((patch.sample[kReach + i][kReach].head<3>() - Vector3f(0, 0, -u)).norm(), 1e-4f);
+  }
+}
+
 // The patch is right-handed: u x v points outwards.
 TEST(PatchTest, IsRightHanded) {
   const PreparedSurface s(shapes::icosphere(3));
