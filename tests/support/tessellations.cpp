@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -214,6 +215,25 @@ class HubMaker {
   std::vector<std::int32_t> start_;    ///< a neighbour of every vertex
 };
 
+/// Whether the faces round v that do not touch its neighbour a keep a fair share of their area when
+/// v moves onto a: else a face as flat as a needle would end up standing on its edge.
+bool can_move_onto(const DomainMesh& d, const std::vector<std::int32_t>& faces, std::int32_t v,
+                   std::int32_t a) {
+  const auto& points = d.mesh.points;
+  return std::ranges::all_of(faces, [&](std::int32_t f) {
+    const Triangle& t = d.mesh.triangles[f];
+    if (std::ranges::count(t, a) > 0) return true;
+    const auto corner = std::ranges::find(t, v) - t.begin();
+    const std::int32_t p = t[(corner + 1) % 3], q = t[(corner + 2) % 3];
+    const auto area = [&](std::int32_t from) {
+      const Vector3d to_p = d.difference(points[from], points[p]);
+      const Vector3d to_q = d.difference(points[from], points[q]);
+      return to_p.cross(to_q).eval();
+    };
+    return area(a).dot(area(v)) > 0.2 * area(v).squaredNorm();
+  });
+}
+
 /// One vertex in 60 moves to a 50th of an edge from a neighbour, one in 400 gets 30 neighbours;
 /// none of them near another, or near a rim.
 void add_needles(DomainMesh& d) {
@@ -222,8 +242,13 @@ void add_needles(DomainMesh& d) {
   const auto neighbours = neighbours_of(d.mesh);
   const std::size_t n = d.mesh.points.size();
   std::map<std::pair<std::int32_t, std::int32_t>, int> uses;
-  for (const Triangle& t : d.mesh.triangles)
-    for (int i = 0; i < 3; ++i) ++uses[std::minmax(t[i], t[(i + 1) % 3])];
+  std::vector<std::vector<std::int32_t>> faces(n);
+  for (std::size_t f = 0; f < d.mesh.triangles.size(); ++f)
+    for (int i = 0; i < 3; ++i) {
+      const Triangle& t = d.mesh.triangles[f];
+      ++uses[std::minmax(t[i], t[(i + 1) % 3])];
+      faces[t[i]].push_back(static_cast<std::int32_t>(f));
+    }
   std::vector<bool> taken(n);
   for (const auto& [edge, count] : uses)
     if (count == 1)
@@ -244,7 +269,10 @@ void add_needles(DomainMesh& d) {
   choose(std::max<std::size_t>(1, n / 60), needles);
 
   for (const std::int32_t v : needles) {
-    const Vector3d base = d.mesh.points[neighbours[v][random.below(neighbours[v].size())]];
+    std::vector<std::int32_t> targets = neighbours[v];
+    std::erase_if(targets, [&](std::int32_t a) { return !can_move_onto(d, faces[v], v, a); });
+    if (targets.empty()) continue;
+    const Vector3d base = d.mesh.points[targets[random.below(targets.size())]];
     d.mesh.points[v] = base + kShort * d.difference(base, d.mesh.points[v]);
   }
   HubMaker maker(d);
