@@ -18,6 +18,7 @@ struct AnalyticOptions {
   std::vector<double> noise = {0, 0.05, 0.15};
   std::vector<std::string> surfaces = {"curved"};
   std::vector<std::string> coordinates = {"semigeodesic"};
+  std::string schedule = "uniform";
   std::filesystem::path csv;
   int levels = 16;
   int runs = 3;
@@ -56,7 +57,10 @@ std::vector<Case> measure(const AnalyticOptions& options) {
           for (const auto kind : {shapes::Tessellation::even, shapes::Tessellation::uneven,
                                   shapes::Tessellation::ragged, shapes::Tessellation::needles}) {
             const jobs::EvolutionOptions evolution{.curved = surface == "curved",
-                                                   .coordinates = coordinates_of(coordinates)};
+                                                   .coordinates = coordinates_of(coordinates),
+                                                   .schedule = options.schedule == "octaves"
+                                                                   ? jobs::Schedule::octaves
+                                                                   : jobs::Schedule::uniform};
             const shapes::AnalyticMesh exact = shapes::tessellate(shape, kind, vertices);
             const double edge = shapes::mean_edge_length(exact.mesh);
             Case c{shape.name,
@@ -194,6 +198,10 @@ void add_analytic(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"curved", "flat"}));
   list(command->add_option("--coordinates", options->coordinates, "semigeodesic, polar"))
       ->check(CLI::IsMember({"semigeodesic", "polar"}));
+  command
+      ->add_option("--schedule", options->schedule,
+                   "uniform: parts are rescaled after each smoothing; octaves: the step grows")
+      ->check(CLI::IsMember({"uniform", "octaves"}));
   command->add_option("--levels", options->levels, "Levels to choose from where there is noise")
       ->check(CLI::Range(0, 999));
   command->add_option("--runs", options->runs, "Of which the median time is reported")

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <set>
+#include <stdexcept>
 #include <utility>
 
 #include "bench/accuracy/command.hpp"
@@ -47,6 +48,7 @@ void evolve(kernels::TriangleMesh mesh, const DirectionOptions& options, engine:
             const Use& use) {
   const bool curved = options.surface == "curved";
   kernels::PreparedSurface surface(std::move(mesh), curved);
+  if (surface.surface.face_count() == 0) throw std::runtime_error("no face is left after repair");
   engine::Observer observer;
   jobs::EvolvingSurface evolving(
       surface.surface, {.curved = curved, .coordinates = coordinates_of(options.coordinates)},
@@ -195,6 +197,9 @@ int run(const DirectionOptions& options) {
       print_table(path.stem().string(), measurements);
     } catch (const io::Error& e) {
       std::fprintf(stderr, "accuracy: %s\n", e.what());
+      exit_code = kFailed;
+    } catch (const std::runtime_error& e) {
+      std::fprintf(stderr, "accuracy: %s: %s\n", path.c_str(), e.what());
       exit_code = kFailed;
     }
   }

@@ -77,15 +77,16 @@ struct Axis {
   }
 };
 
-/// Round numbers: 1, 2 or 5 times a power of ten apart, four to eight of them.
+/// Round numbers: 1, 2 or 5 times a power of ten apart, three to seven of them.
 Axis linear_axis(double low, double high, double from, double to) {
   if (!(high > low)) high = low + 1;
-  const double power = std::pow(10, std::floor(std::log10((high - low) / 4)));
+  const double power = std::pow(10, std::floor(std::log10((high - low) / 3)));
   double distance = power;
   for (const double factor : {2.0, 5.0})
-    if ((high - low) / (factor * power) >= 4) distance = factor * power;
+    if ((high - low) / (factor * power) >= 3) distance = factor * power;
   Axis axis{low, high, from, to, false, {}};
-  for (double k = std::ceil(low / distance - 1e-9); k * distance <= high + 1e-9 * distance; ++k)
+  for (double k = std::ceil(low / distance - 1e-9) + 0.0; k * distance <= high + 1e-9 * distance;
+       ++k)
     axis.ticks.push_back(k * distance);
   return axis;
 }
@@ -107,27 +108,42 @@ bool drawable(const std::pair<double, double>& p) {
   return std::isfinite(p.first) && std::isfinite(p.second);
 }
 
+/// Of all drawable points; an empty plot has none.
+struct Extent {
+  double x_low = std::numeric_limits<double>::infinity();
+  double x_high = -x_low;
+  double y_low = x_low;
+  double y_high = -x_low;
+
+  bool empty() const { return !(x_high >= x_low); }
+  bool wide() const { return y_low > 0 && y_high > kLogRatio * y_low; }
+};
+
+Extent extent_of(const Plot& plot) {
+  Extent e;
+  for (const Series& series : plot.series)
+    for (const auto& p : series.points) {
+      if (!drawable(p)) continue;
+      e.x_low = std::min(e.x_low, p.first);
+      e.x_high = std::max(e.x_high, p.first);
+      e.y_low = std::min(e.y_low, p.second);
+      e.y_high = std::max(e.y_high, p.second);
+    }
+  return e;
+}
+
 struct Axes {
   Axis x, y;
 };
 
-Axes axes_of(const Plot& plot) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  double x_low = kInfinity, x_high = -kInfinity, y_low = kInfinity, y_high = 0;
-  for (const Series& series : plot.series)
-    for (const auto& p : series.points) {
-      if (!drawable(p)) continue;
-      x_low = std::min(x_low, p.first);
-      x_high = std::max(x_high, p.first);
-      y_low = std::min(y_low, p.second);
-      y_high = std::max(y_high, p.second);
-    }
-  if (!(x_high >= x_low)) x_low = 0, x_high = y_high = 1;
+Axes axes_of(const Plot& plot, bool logarithmic) {
+  Extent e = extent_of(plot);
+  if (e.empty()) e = {0, 1, 0, 1};
   const double bottom = kPanelHeight - kBottom;
-  Axes axes{linear_axis(x_low, x_high, kLeft + 8, kPanelWidth - kRight - 8), {}};
-  axes.y = y_low > 0 && y_high > kLogRatio * y_low
-               ? log_axis(y_low, y_high, bottom, kTop)
-               : linear_axis(0, y_high > 0 ? 1.08 * y_high : 1, bottom, kTop);
+  Axes axes{linear_axis(e.x_low, e.x_high, kLeft + 8, kPanelWidth - kRight - 8), {}};
+  axes.y = logarithmic && e.y_low > 0
+               ? log_axis(e.y_low, e.y_high, bottom, kTop)
+               : linear_axis(0, e.y_high > 0 ? 1.08 * e.y_high : 1, bottom, kTop);
   return axes;
 }
 
@@ -194,9 +210,11 @@ std::string svg(const std::vector<Plot>& panels, int columns, const std::string&
                        number(height) +
                        "\" font-family=\"sans-serif\" font-size=\"11\" fill=\"#222222\">\n"
                        "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
+  const bool logarithmic =
+      std::ranges::any_of(panels, [](const Plot& plot) { return extent_of(plot).wide(); });
   for (int i = 0; i < count; ++i) {
     const Plot& plot = panels[i];
-    const Axes axes = axes_of(plot);
+    const Axes axes = axes_of(plot, logarithmic);
     result += "<g transform=\"translate(" + number(i % columns * kPanelWidth) + " " +
               number(i / columns * kPanelHeight) + ")\">\n" + frame(plot, axes);
     for (std::size_t s = 0; s < plot.series.size(); ++s)
