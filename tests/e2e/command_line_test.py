@@ -166,7 +166,10 @@ class RunTest(SemigeoTest):
 
     def shown_on_terminal(self, columns=None):
         """What a run shows on a terminal, and the process."""
-        terminal, stderr = pty.openpty()
+        try:
+            terminal, stderr = pty.openpty()
+        except OSError as error:  # a container without /dev/pts
+            self.skipTest(f"no terminal can be had here: {error}")
         if columns:
             fcntl.ioctl(stderr, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
         process = subprocess.run([PROGRAM, "run", self.scans, "--output", self.archive],
