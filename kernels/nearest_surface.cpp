@@ -133,7 +133,9 @@ NearestPoint NearestSurface::nearest(const Eigen::Vector3d& p, double limit) con
   pending[count++] = {1, boxes_[1].squared_distance(p)};
   while (count > 0) {
     const Pending next = pending[--count];
-    if (next.squared_distance > best.distance * best.distance) continue;
+    const double reach2 = best.distance * best.distance;
+    if (next.squared_distance > reach2 || (best.face != kNone && next.squared_distance == reach2))
+      continue;
     if (next.box >= leaf_count_) {
       search_leaf(next.box - leaf_count_, p, best);
       continue;
