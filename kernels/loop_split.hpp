@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace semigeo::kernels {
+
+struct LoopSplitOptions {
+  /// Least ratio of a split: smallest distance of another vertex to the splitting plane, over the
+  /// length of the splitting line.
+  double min_ratio = 1e-6;
+  /// Where no plane separates the two sub-loops, accept a splitting line that neither of them
+  /// crosses, seen along the average normal.
+  bool allow_diagonals = true;
+};
+
+/// Covers a closed loop of points with triangles, by splitting it in two again and again until all
+/// sub-loops have three edges. A split is a plane through two vertices along the average normal of
+/// the loop; it is valid only if the two sub-loops lie on opposite sides of it, and of the valid
+/// ones the best ratio (see LoopSplitOptions) is taken first. Source: thesis 5.1.
+///
+/// Differs: where a (sub-)loop has no such plane, which is common on jagged loops, any diagonal
+/// that stays inside the loop will do; loops of more than 128 edges are split near the middle, by
+/// the best of some planes instead of all. Cost: about n^2 for a loop of n <= 128 edges, n log n
+/// for the halving of long ones as long as planes separate them. Keeps its memory from loop to
+/// loop; not thread-safe, so one for each thread.
+class LoopSplitter {
+ public:
+  /// Whether vertices i and j of the loop must not be joined (they are an edge already).
+  using Joined = std::function<bool(std::int32_t, std::int32_t)>;
+
+  explicit LoopSplitter(const LoopSplitOptions& options = {}) : options_(options) {}
+
+  /// The triangles of `loop` (>= 3 points), as indices into it and running along it; nothing if
+  /// some sub-loop has no valid split. Sub-loops are split along `normal`, against which the loop
+  /// runs anticlockwise; if that is zero, each along its own average normal (its vector area), or,
+  /// where that leads nowhere, all along that of the whole loop. Valid until the next call.
+  std::span<const std::array<std::int32_t, 3>> split(
+      std::span<const Eigen::Vector3d> loop, const Joined& joined,
+      const Eigen::Vector3d& normal = Eigen::Vector3d::Zero());
+
+ private:
+  struct Split {
+    int i = -1;
+    int j = -1;
+    double score = 0;
+    bool found() const { return i >= 0; }
+  };
+
+  bool split_all(std::span<const Eigen::Vector3d> loop, const Joined& joined,
+                 const Eigen::Vector3d& normal);
+  Eigen::Vector3d own_normal(std::span<const Eigen::Vector3d> loop) const;
+  bool project(std::span<const Eigen::Vector3d> loop, const Eigen::Vector3d& normal);
+  Split best_split(const Joined& joined) const;
+  Split best_of_all(const Joined& joined, bool planes) const;
+  Split best_near_middle(const Joined& joined, bool planes) const;
+  void consider(int i, int j, bool planes, double weight, const Joined& joined, Split& best) const;
+  double plane_ratio(int i, int j, double at_least) const;
+  double diagonal_ratio(int i, int j) const;
+  double side(int i, int j, int k) const;
+  bool inside_corner(int i, int j) const;
+  bool crosses(int i, int j, int k) const;
+  int size() const { return static_cast<int>(current_.size()); }
+  int after(int k) const { return k + 1 == size() ? 0 : k + 1; }
+  int before(int k) const { return k == 0 ? size() - 1 : k - 1; }
+
+  LoopSplitOptions options_;
+  std::vector<std::int32_t> pending_;       ///< vertices of all sub-loops still to be split
+  std::vector<std::int32_t> sizes_;         ///< of those sub-loops
+  std::vector<std::int32_t> current_;       ///< the sub-loop in hand
+  std::vector<Eigen::Vector2d> projected_;  ///< its points in the plane
+  std::vector<std::array<std::int32_t, 3>> triangles_;
+};
+
+}  // namespace semigeo::kernels
