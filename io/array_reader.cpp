@@ -38,7 +38,8 @@ std::vector<Value> read_values(const Hdf5File& file, const std::string& path, in
                                ElementType type) {
   const Hdf5File::Array array = open_checked(file, path, columns);
   const ElementType found = array.shape().type;
-  const bool widens = type == ElementType::int64 && found == ElementType::int32;
+  const bool widens =
+      type == ElementType::int64 && (found == ElementType::int32 || found == ElementType::uint8);
   if (found != type && !widens)
     file.refuse(
         path, "holds " + std::string(name_of(found)) + " instead of " + std::string(name_of(type)));
@@ -46,7 +47,8 @@ std::vector<Value> read_values(const Hdf5File& file, const std::string& path, in
   values.reserve(static_cast<std::size_t>(array.shape().rows * columns));
   if constexpr (std::is_same_v<Value, std::int64_t>)
     if (widens) {
-      append_rows<std::int32_t>(array, values);
+      found == ElementType::int32 ? append_rows<std::int32_t>(array, values)
+                                  : append_rows<std::uint8_t>(array, values);
       return values;
     }
   append_rows<Value>(array, values);

@@ -69,6 +69,7 @@ Dataset::Dataset(const std::filesystem::path& path) : file_(Hdf5File::open(path)
   header_.job_key = text("job_key");
   header_.length_unit = text("length_unit");
   header_.repairs_json = text("repairs");
+  header_.preparation_json = text("preparation");
   const auto origin = attribute<std::vector<double>>(file_, "/", "origin");
   if (origin.size() != 3) file_.refuse("/", "its attribute origin must have three values");
   std::ranges::copy(origin, header_.origin.begin());
@@ -77,6 +78,7 @@ Dataset::Dataset(const std::filesystem::path& path) : file_(Hdf5File::open(path)
     file_.refuse("/levels", "must hold 1 to " + std::to_string(kMostLevels) + " levels");
   level_count_ = static_cast<int>(levels.size());
   principal_ = file_.has(level_path(0) + "/principal_curvature_1");
+  filled_ = file_.has(level_path(0) + "/vertex_filled");
   for (int k = 0; k < level_count_; ++k)
     if ("/levels/" + levels[k].name != level_path(k))
       file_.refuse("/levels", "its levels are not numbered from 000 without gaps");
@@ -100,7 +102,8 @@ LevelInfo Dataset::level(int level) const {
   info.vertices = file_.open_array(path + "/points").shape().rows;
   info.triangles = file_.open_array(path + "/triangles").shape().rows;
   for (const LevelArray& array : kLevelArrays) {
-    if (array.principal && !principal_) continue;
+    if (array.presence == Presence::principal && !principal_) continue;
+    if (array.presence == Presence::filled && !filled_) continue;
     const std::string name = path + "/" + array.name;
     const ArrayShape shape = file_.open_array(name).shape();
     if (shape.type != array.type || shape.columns != array.columns ||

@@ -34,12 +34,14 @@ class Dataset {
   int level_count() const { return level_count_; }
   /// Whether its levels have principal curvatures and directions.
   bool has_principal() const { return principal_; }
+  /// Whether they have marks of filled vertices and faces.
+  bool has_filled() const { return filled_; }
   /// Attributes and sizes; Error if an array is missing or does not fit the others.
   LevelInfo level(int level) const;
 
   /// An array of a level, row after row: points and normals 3 N floats, the others N.
   std::vector<float> read_floats(int level, std::string_view name) const;
-  /// triangles (3 F), source_vertex (N), part (N).
+  /// triangles (3 F), source_vertex (N), part (N), vertex_filled (N), face_filled (F).
   std::vector<std::int64_t> read_integers(int level, std::string_view name) const;
 
   /// Reads everything: every chunk against its checksum, all of it against the digest, every level
@@ -55,6 +57,7 @@ class Dataset {
   std::string digest_;
   int level_count_ = 0;
   bool principal_ = false;
+  bool filled_ = false;
 };
 
 /// The job key of a complete dataset; nothing if the file is absent, unreadable or incomplete.

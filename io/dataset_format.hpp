@@ -22,6 +22,7 @@ struct DatasetHeader {
   std::string job_key;     ///< hash of everything the content depends on
   std::string length_unit = "unknown";
   std::string repairs_json = "{}";           ///< what was dropped or welded, with counts
+  std::string preparation_json = "{}";       ///< what was filled or decimated on request
   std::array<double, 3> origin = {0, 0, 0};  ///< add to the points for the scan's coordinates
 };
 
@@ -34,6 +35,13 @@ struct LevelAttributes {
   std::int64_t parts = 0;  ///< connected parts
 };
 
+/// Which levels have an array.
+enum class Presence {
+  always,
+  principal,  ///< all, where principal curvatures were asked for
+  filled      ///< all, where holes were to be filled
+};
+
 /// An array of a level: (N) or (N, columns) over its vertices, or over its triangles.
 struct LevelArray {
   const char* name;
@@ -41,21 +49,23 @@ struct LevelArray {
   int columns;
   bool per_triangle;
   bool connectivity;  ///< shared by the levels until one brings its own
-  bool principal;     ///< only where principal curvatures were asked for
+  Presence presence;
 };
-inline constexpr std::array<LevelArray, 12> kLevelArrays = {{
-    {"points", ElementType::float32, 3, false, false, false},
-    {"normals", ElementType::float32, 3, false, false, false},
-    {"gaussian_curvature", ElementType::float32, 1, false, false, false},
-    {"mean_curvature", ElementType::float32, 1, false, false, false},
-    {"patch_completeness", ElementType::float32, 1, false, false, false},
-    {"principal_curvature_1", ElementType::float32, 1, false, false, true},
-    {"principal_curvature_2", ElementType::float32, 1, false, false, true},
-    {"principal_direction_1", ElementType::float32, 3, false, false, true},
-    {"principal_direction_2", ElementType::float32, 3, false, false, true},
-    {"triangles", ElementType::int64, 3, true, true, false},
-    {"source_vertex", ElementType::int64, 1, false, true, false},
-    {"part", ElementType::int32, 1, false, true, false},
+inline constexpr std::array<LevelArray, 14> kLevelArrays = {{
+    {"points", ElementType::float32, 3, false, false, Presence::always},
+    {"normals", ElementType::float32, 3, false, false, Presence::always},
+    {"gaussian_curvature", ElementType::float32, 1, false, false, Presence::always},
+    {"mean_curvature", ElementType::float32, 1, false, false, Presence::always},
+    {"patch_completeness", ElementType::float32, 1, false, false, Presence::always},
+    {"principal_curvature_1", ElementType::float32, 1, false, false, Presence::principal},
+    {"principal_curvature_2", ElementType::float32, 1, false, false, Presence::principal},
+    {"principal_direction_1", ElementType::float32, 3, false, false, Presence::principal},
+    {"principal_direction_2", ElementType::float32, 3, false, false, Presence::principal},
+    {"triangles", ElementType::int64, 3, true, true, Presence::always},
+    {"source_vertex", ElementType::int64, 1, false, true, Presence::always},
+    {"part", ElementType::int32, 1, false, true, Presence::always},
+    {"vertex_filled", ElementType::uint8, 1, false, true, Presence::filled},
+    {"face_filled", ElementType::uint8, 1, true, true, Presence::filled},
 }};
 
 /// "/levels/007".

@@ -29,6 +29,7 @@ void write_header(DigestedFile& file, const DatasetHeader& header) {
       {"input_xxh3", header.input_xxh3},
       {"job_key", header.job_key},
       {"repairs", header.repairs_json},
+      {"preparation", header.preparation_json},
   };
   for (const auto& [name, value] : attributes) file.write_attribute("/", name, value);
 }
@@ -68,6 +69,15 @@ void DatasetWriter::write_connectivity(const EncodedConnectivity& connectivity) 
   write(connectivity_level_, format_of("triangles"), connectivity.triangles, triangles_);
   write(connectivity_level_, format_of("source_vertex"), connectivity.source_vertex, vertices_);
   write(connectivity_level_, format_of("part"), connectivity.part, vertices_);
+  const bool filled = connectivity.vertex_filled && connectivity.face_filled;
+  if (filled != (connectivity.vertex_filled || connectivity.face_filled) ||
+      (!steps_.empty() && filled != filled_))
+    throw std::invalid_argument("all levels have marks of filled vertices and faces or none");
+  filled_ = filled;
+  if (filled) {
+    write(connectivity_level_, format_of("vertex_filled"), *connectivity.vertex_filled, vertices_);
+    write(connectivity_level_, format_of("face_filled"), *connectivity.face_filled, triangles_);
+  }
 }
 
 void DatasetWriter::write_level(const LevelAttributes& attributes, const EncodedFields& fields) {
@@ -98,14 +108,15 @@ void DatasetWriter::write_level(const LevelAttributes& attributes, const Encoded
   }
   if (!connectivity_pending_)
     for (const LevelArray& array : kLevelArrays)
-      if (array.connectivity)
+      if (array.connectivity && (filled_ || array.presence != Presence::filled))
         file_.link(connectivity_level_ + "/" + array.name, level + "/" + array.name);
   steps_.push_back({.value = attributes.scale,
                     .level = level,
                     .vertices = vertices_,
                     .triangles = triangles_,
                     .new_connectivity = connectivity_pending_,
-                    .principal = fields.principal.has_value()});
+                    .principal = fields.principal.has_value(),
+                    .filled = filled_});
   connectivity_pending_ = false;
   level_begun_ = false;
 }

@@ -16,6 +16,9 @@ struct EncodedConnectivity {
   EncodedArray triangles;      ///< int64 (F, 3)
   EncodedArray source_vertex;  ///< int64 (N): vertex of level 0, or -1
   EncodedArray part;           ///< int32 (N): connected part
+  /// Marks of what filling holes has made: 1, else 0; in every level or in none.
+  std::optional<EncodedArray> vertex_filled = {};  ///< uint8 (N)
+  std::optional<EncodedArray> face_filled = {};    ///< uint8 (F)
 };
 
 /// Principal curvatures k1 >= k2, in length^-1, and their unit directions.
@@ -67,6 +70,7 @@ class DatasetWriter {
   DigestedFile file_;  // after target_, so that it is closed before its name is removed
   Compression compression_;
   std::vector<VtkhdfStep> steps_;
+  bool filled_ = false;
   bool level_begun_ = false;
   bool connectivity_pending_ = false;
   std::int64_t vertices_ = 0;

@@ -91,7 +91,10 @@ void create_groups(DigestedFile& file, const VtkhdfLayout& layout) {
 std::vector<VtkhdfPointArray> point_arrays_of(const VtkhdfStep& step) {
   std::vector<VtkhdfPointArray> arrays;
   for (const VtkhdfPointArray& array : kVtkhdfPointArrays)
-    if (step.principal || !array.principal) arrays.push_back(array);
+    if (array.presence == Presence::always ||
+        (array.presence == Presence::principal && step.principal) ||
+        (array.presence == Presence::filled && step.filled))
+      arrays.push_back(array);
   return arrays;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/content_digest.hpp"
+#include "io/dataset_format.hpp"
 
 namespace semigeo::io {
 
@@ -19,6 +20,7 @@ struct VtkhdfStep {
   std::int64_t triangles = 0;
   bool new_connectivity = false;  ///< its triangles are not those of the step before
   bool principal = false;         ///< it has principal curvatures; as all steps or none
+  bool filled = false;            ///< it has marks of filled vertices; as all steps or none
 };
 
 /// A per-vertex array of a level and its name in /VTKHDF/PointData.
@@ -27,19 +29,24 @@ struct VtkhdfPointArray {
   const char* source;
   ElementType type;
   int columns;
-  bool principal;  ///< only where the steps have principal curvatures
+  Presence presence;
 };
-inline constexpr std::array<VtkhdfPointArray, 10> kVtkhdfPointArrays = {{
-    {"Normals", "normals", ElementType::float32, 3, false},
-    {"gaussian_curvature", "gaussian_curvature", ElementType::float32, 1, false},
-    {"mean_curvature", "mean_curvature", ElementType::float32, 1, false},
-    {"patch_completeness", "patch_completeness", ElementType::float32, 1, false},
-    {"part", "part", ElementType::int32, 1, false},
-    {"source_vertex", "source_vertex", ElementType::int64, 1, false},
-    {"principal_curvature_1", "principal_curvature_1", ElementType::float32, 1, true},
-    {"principal_curvature_2", "principal_curvature_2", ElementType::float32, 1, true},
-    {"principal_direction_1", "principal_direction_1", ElementType::float32, 3, true},
-    {"principal_direction_2", "principal_direction_2", ElementType::float32, 3, true},
+inline constexpr std::array<VtkhdfPointArray, 11> kVtkhdfPointArrays = {{
+    {"Normals", "normals", ElementType::float32, 3, Presence::always},
+    {"gaussian_curvature", "gaussian_curvature", ElementType::float32, 1, Presence::always},
+    {"mean_curvature", "mean_curvature", ElementType::float32, 1, Presence::always},
+    {"patch_completeness", "patch_completeness", ElementType::float32, 1, Presence::always},
+    {"part", "part", ElementType::int32, 1, Presence::always},
+    {"source_vertex", "source_vertex", ElementType::int64, 1, Presence::always},
+    {"principal_curvature_1", "principal_curvature_1", ElementType::float32, 1,
+     Presence::principal},
+    {"principal_curvature_2", "principal_curvature_2", ElementType::float32, 1,
+     Presence::principal},
+    {"principal_direction_1", "principal_direction_1", ElementType::float32, 3,
+     Presence::principal},
+    {"principal_direction_2", "principal_direction_2", ElementType::float32, 3,
+     Presence::principal},
+    {"vertex_filled", "vertex_filled", ElementType::uint8, 1, Presence::filled},
 }};
 
 /// Those of the arrays that a step has.

@@ -42,8 +42,9 @@ std::string data_item(const std::string& dataset, const std::string& path, Eleme
   const bool real = type == ElementType::float32 || type == ElementType::float64;
   std::string shape = std::to_string(rows);
   if (columns > 1) shape.append(" ").append(std::to_string(columns));
-  return "          <DataItem Format=\"HDF\" NumberType=\"" + std::string(real ? "Float" : "Int") +
-         "\" Precision=\"" + std::to_string(size_of(type)) + "\" Dimensions=\"" + shape + "\">" +
+  const std::string kind = real ? "Float" : type == ElementType::uint8 ? "UChar" : "Int";
+  return "          <DataItem Format=\"HDF\" NumberType=\"" + kind + "\" Precision=\"" +
+         std::to_string(size_of(type)) + "\" Dimensions=\"" + shape + "\">" +
          escaped(dataset + ":" + path) + "</DataItem>\n";
 }
 
@@ -92,7 +93,8 @@ std::string sidecar_text(const std::filesystem::path& dataset) {
                      .vertices = level.vertices,
                      .triangles = level.triangles,
                      .new_connectivity = k == 0,
-                     .principal = source.has_principal()});
+                     .principal = source.has_principal(),
+                     .filled = source.has_filled()});
   }
   return xdmf_text(dataset.filename().string(), steps);
 }

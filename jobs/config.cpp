@@ -5,11 +5,17 @@
 namespace semigeo::jobs {
 
 std::string to_json(const SurfaceParameters& parameters) {
+  const PreparationOptions& preparation = parameters.preparation;
+  const auto tolerance = nlohmann::json(preparation.decimate).dump() +
+                         (preparation.decimate_in_length_units ? " length units" : " edges");
   const EvolutionOptions& evolution = parameters.evolution;
   const bool polar = evolution.coordinates == kernels::Coordinates::polar;
   // nlohmann's object is an ordered map: keys come out sorted.
   return nlohmann::json{
       {"compression", parameters.compression == io::Compression::deflate ? "deflate" : "none"},
+      {"decimate", tolerance},
+      {"fill_holes", preparation.fill_holes},
+      {"target_vertices", preparation.target_vertices},
       {"coordinates", polar ? "polar" : "semigeodesic"},
       {"length_unit", parameters.length_unit},
       {"levels", parameters.levels},

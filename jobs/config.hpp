@@ -6,12 +6,14 @@
 
 #include "io/chunk_codec.hpp"
 #include "jobs/stages/evolving_surface.hpp"
+#include "jobs/stages/prepare_surface.hpp"
 
 namespace semigeo::jobs {
 
 /// Everything besides the scan itself that a dataset's content depends on.
 struct SurfaceParameters {
   int levels = 8;  ///< smoothing iterations; the dataset has levels + 1 levels
+  PreparationOptions preparation = {};
   EvolutionOptions evolution = {};
   io::Compression compression = io::Compression::deflate;
   std::string length_unit = "unknown";

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -45,6 +46,7 @@ class Patch {
   Patch(const Surface& surface, std::span<const std::int32_t> loop);
 
   bool split_loop();
+  bool cover_sub_loop(const std::vector<std::int32_t>& sub_loop, double& folded_area);
   void refine(std::int32_t max_new_vertices);
   void fair();
   HolePatch result() const;
@@ -101,9 +103,44 @@ bool Patch::split_loop() {
   LoopSplitter splitter;
   const auto triangles = splitter.split(points_, joined);
   triangles_.assign(triangles.begin(), triangles.end());
-  if (triangles_.empty() && rim_ <= kLongestCover)
-    triangles_ = cover_loop(points_, rim_normals(), joined);
-  return !triangles_.empty();
+  if (!triangles_.empty()) return true;
+  std::vector<std::vector<std::int32_t>> stuck;
+  if (rim_ <= kLongestCover) {
+    stuck.resize(1, std::vector<std::int32_t>(rim_));
+    std::iota(stuck[0].begin(), stuck[0].end(), 0);
+  } else {
+    const auto most = splitter.split_as_far_as_possible(points_, joined, stuck);
+    triangles_.assign(most.begin(), most.end());
+  }
+  double folded_area = 0;
+  for (const auto& sub_loop : stuck)
+    if (!cover_sub_loop(sub_loop, folded_area)) return false;
+  double area = 0;
+  for (const Triangle& t : triangles_) area += 0.5 * face_normal(t).norm();
+  return folded_area <= kMostFolded * area;
+}
+
+/// Covers a part of the loop that crosses itself seen from any side.
+bool Patch::cover_sub_loop(const std::vector<std::int32_t>& sub_loop, double& folded_area) {
+  const auto n = static_cast<std::int32_t>(sub_loop.size());
+  if (n > kLongestCover) return false;
+  const std::vector<Eigen::Vector3d> rim = rim_normals();
+  std::vector<Eigen::Vector3d> points;
+  std::vector<Eigen::Vector3d> normals;
+  for (std::int32_t k = 0; k < n; ++k) {
+    const std::int32_t v = sub_loop[k];
+    points.push_back(points_[v]);
+    // The face beyond a splitting line is not known.
+    const bool on_rim = sub_loop[k + 1 == n ? 0 : k + 1] == (v + 1 == rim_ ? 0 : v + 1);
+    normals.push_back(on_rim ? rim[v] : Eigen::Vector3d::Zero());
+  }
+  const LoopCover cover = cover_loop(points, normals, [&](std::int32_t a, std::int32_t b) {
+    return joined_in(surface_, loop_[sub_loop[a]], loop_[sub_loop[b]]);
+  });
+  for (const Triangle& t : cover.triangles)
+    triangles_.push_back({sub_loop[t[0]], sub_loop[t[1]], sub_loop[t[2]]});
+  folded_area += cover.folded_area;
+  return !cover.triangles.empty();
 }
 
 /// Unit normals of the faces on the other side of the loop's edges.

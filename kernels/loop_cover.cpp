@@ -10,11 +10,8 @@ namespace {
 
 /// An edge of length l bent by 90 degrees costs as much as an area of l^2 / 4.
 constexpr double kBending = 0.25;
-/// Neighbours fold back on each other if the cosine between their normals is below this ...
+/// Neighbours fold back on each other if the cosine between their normals is below this.
 constexpr double kFold = -0.85;
-/// ... and a cover is valid if the smaller of any two such have at most this share of its area.
-constexpr double kMostFolded = 0.05;
-
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Least costs of all stretches of a loop, shortest first.
@@ -35,27 +32,24 @@ class Cover {
       }
   }
 
-  std::vector<std::array<std::int32_t, 3>> triangles() const {
-    std::vector<std::array<std::int32_t, 3>> result;
-    if (!(at(0, size_ - 1).cost < kInfinity)) return result;
-    double area = 0;
-    double folded = 0;
+  LoopCover result() const {
+    LoopCover cover;
+    if (!(at(0, size_ - 1).cost < kInfinity)) return cover;
     std::vector<std::pair<std::int32_t, std::int32_t>> pending{{0, size_ - 1}};
     while (!pending.empty()) {
       const auto [i, k] = pending.back();
       pending.pop_back();
       const Stretch& stretch = at(i, k);
       if (stretch.tip < 0) continue;
-      result.push_back({i, stretch.tip, k});
-      area += stretch.area;
+      cover.triangles.push_back({i, stretch.tip, k});
+      cover.area += stretch.area;
       for (const Stretch* side : {&at(i, stretch.tip), &at(stretch.tip, k)})
         if (side->tip >= 0 && side->normal.dot(stretch.normal) < kFold)
-          folded += std::min(side->area, stretch.area);
+          cover.folded_area += std::min(side->area, stretch.area);
       pending.emplace_back(stretch.tip, k);
       pending.emplace_back(i, stretch.tip);
     }
-    if (!(folded <= kMostFolded * area)) result.clear();
-    return result;
+    return cover;
   }
 
  private:
@@ -105,12 +99,12 @@ class Cover {
 
 }  // namespace
 
-std::vector<std::array<std::int32_t, 3>> cover_loop(
-    std::span<const Eigen::Vector3d> loop, std::span<const Eigen::Vector3d> normals,
-    const std::function<bool(std::int32_t, std::int32_t)>& joined) {
+LoopCover cover_loop(std::span<const Eigen::Vector3d> loop,
+                     std::span<const Eigen::Vector3d> normals,
+                     const std::function<bool(std::int32_t, std::int32_t)>& joined) {
   Cover cover(loop, normals);
   cover.solve(joined);
-  return cover.triangles();
+  return cover.result();
 }
 
 }  // namespace semigeo::kernels

@@ -9,14 +9,23 @@
 
 namespace semigeo::kernels {
 
+struct LoopCover {
+  std::vector<std::array<std::int32_t, 3>> triangles;  ///< indices into the loop, running along it
+  double area = 0;
+  double folded_area = 0;  ///< of the smaller of any two neighbours that lie back on each other
+};
+
+/// A cover that lies folded on itself by more than this share of its area is none: a figure of
+/// eight has no inside.
+inline constexpr double kMostFolded = 0.05;
+
 /// Covers a closed loop of n >= 3 points with the n - 2 triangles that have the least sum of area
 /// and bending, wherever it runs in space: for loops that cross themselves seen from any side, so
-/// that no plane splits them. `normals[k]` is the unit normal of the face across the edge k, k + 1;
-/// the triangles run along the loop. Two vertices that are `joined` are not joined again. Nothing
-/// if no cover exists or if more than 5 % of its area lies folded back on itself, as a figure of
-/// eight would. Time grows as n^3 (n = 100: 4 ms), memory as n^2.
-std::vector<std::array<std::int32_t, 3>> cover_loop(
-    std::span<const Eigen::Vector3d> loop, std::span<const Eigen::Vector3d> normals,
-    const std::function<bool(std::int32_t, std::int32_t)>& joined);
+/// that no plane splits them. `normals[k]` is the unit normal of the face across the edge k, k + 1,
+/// or zero if that is not known. Two vertices that are `joined` are not joined again. No triangles
+/// if no cover exists. Time grows as n^3 (n = 100: 4 ms), memory as n^2.
+LoopCover cover_loop(std::span<const Eigen::Vector3d> loop,
+                     std::span<const Eigen::Vector3d> normals,
+                     const std::function<bool(std::int32_t, std::int32_t)>& joined);
 
 }  // namespace semigeo::kernels

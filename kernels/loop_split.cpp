@@ -31,18 +31,27 @@ double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
 std::span<const std::array<std::int32_t, 3>> LoopSplitter::split(
     std::span<const Eigen::Vector3d> loop, const Joined& joined, const Eigen::Vector3d& normal) {
   if (!normal.isZero(0)) {
-    split_all(loop, joined, normal);
-  } else if (!split_all(loop, joined, normal)) {
+    split_all(loop, joined, normal, nullptr);
+  } else if (!split_all(loop, joined, normal, nullptr)) {
     current_.resize(loop.size());
     std::iota(current_.begin(), current_.end(), 0);
-    split_all(loop, joined, own_normal(loop));
+    split_all(loop, joined, own_normal(loop), nullptr);
   }
+  return triangles_;
+}
+
+std::span<const std::array<std::int32_t, 3>> LoopSplitter::split_as_far_as_possible(
+    std::span<const Eigen::Vector3d> loop, const Joined& joined,
+    std::vector<std::vector<std::int32_t>>& stuck) {
+  stuck.clear();
+  split_all(loop, joined, Eigen::Vector3d::Zero(), &stuck);
   return triangles_;
 }
 
 /// Seen against `normal`, or, if that is zero, each sub-loop against its own.
 bool LoopSplitter::split_all(std::span<const Eigen::Vector3d> loop, const Joined& joined,
-                             const Eigen::Vector3d& normal) {
+                             const Eigen::Vector3d& normal,
+                             std::vector<std::vector<std::int32_t>>* stuck) {
   triangles_.clear();
   pending_.resize(loop.size());
   std::iota(pending_.begin(), pending_.end(), 0);
@@ -59,6 +68,10 @@ bool LoopSplitter::split_all(std::span<const Eigen::Vector3d> loop, const Joined
     }
     const bool is_seen = project(loop, normal.isZero(0) ? own_normal(loop) : normal);
     const Split best = is_seen && n > 3 ? best_split(joined) : Split{};
+    if (!best.found() && stuck != nullptr) {
+      stuck->push_back(current_);
+      continue;
+    }
     if (!best.found()) {
       triangles_.clear();
       return false;

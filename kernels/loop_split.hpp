@@ -43,6 +43,12 @@ class LoopSplitter {
       std::span<const Eigen::Vector3d> loop, const Joined& joined,
       const Eigen::Vector3d& normal = Eigen::Vector3d::Zero());
 
+  /// The same, each sub-loop along its own normal; those without a valid split go to `stuck` (of
+  /// indices into the loop) and the others are split on.
+  std::span<const std::array<std::int32_t, 3>> split_as_far_as_possible(
+      std::span<const Eigen::Vector3d> loop, const Joined& joined,
+      std::vector<std::vector<std::int32_t>>& stuck);
+
  private:
   struct Split {
     int i = -1;
@@ -52,7 +58,7 @@ class LoopSplitter {
   };
 
   bool split_all(std::span<const Eigen::Vector3d> loop, const Joined& joined,
-                 const Eigen::Vector3d& normal);
+                 const Eigen::Vector3d& normal, std::vector<std::vector<std::int32_t>>* stuck);
   Eigen::Vector3d own_normal(std::span<const Eigen::Vector3d> loop) const;
   bool project(std::span<const Eigen::Vector3d> loop, const Eigen::Vector3d& normal);
   Split best_split(const Joined& joined) const;

@@ -57,6 +57,7 @@ struct DistanceSummary {
 
   double mean() const { return count == 0 ? 0.0 : sum / static_cast<double>(count); }
   void add(const DistanceSummary& other);
+  bool operator==(const DistanceSummary&) const = default;
 };
 
 /// One-sided distance of points from a surface; of their maximum the one-sided Hausdorff distance.

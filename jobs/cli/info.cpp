@@ -77,6 +77,7 @@ nlohmann::json dataset_json(const std::filesystem::path& path) {
           {"creator_version", dataset.creator_version()},
           {"parameters", parsed(dataset, "parameters", header.parameters_json)},
           {"repairs", parsed(dataset, "repairs", header.repairs_json)},
+          {"preparation", parsed(dataset, "preparation", header.preparation_json)},
           {"length_unit", header.length_unit},
           {"origin", header.origin},
           {"digest", dataset.digest()},
@@ -93,6 +94,7 @@ void print_dataset(const nlohmann::json& d) {
   for (const auto& [name, count] : d["repairs"].items())
     if (count != 0) repairs += (repairs.empty() ? "" : ", ") + count.dump() + " " + name;
   std::printf("  repairs     %s\n", repairs.empty() ? "none" : repairs.c_str());
+  if (!d["preparation"].empty()) std::printf("  preparation %s\n", d["preparation"].dump().c_str());
   std::printf("  length unit %s, digest %s\n", d["length_unit"].get<std::string>().c_str(),
               d["digest"].get<std::string>().c_str());
   std::printf(

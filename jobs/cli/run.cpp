@@ -1,6 +1,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -28,6 +29,7 @@ struct RunOptions {
   std::string surface = "curved";
   std::string coordinates = "semigeodesic";
   std::string schedule = "uniform";
+  std::string decimate;
   std::string compression = "deflate";
   bool json = false;
   bool dry_run = false;
@@ -108,7 +110,7 @@ const char* state_name(JobState state) {
 }
 
 void print_json(const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,
-                const RunSummary& summary) {
+                const SurfaceParameters& parameters, const RunSummary& summary) {
   auto scans = nlohmann::json::array();
   for (std::size_t i = 0; i < plan.size(); ++i) {
     auto scan = scan_json(plan[i]);
@@ -123,6 +125,8 @@ void print_json(const std::vector<PlannedJob>& plan, const std::vector<JobOutcom
       scan["parts"] = outcome.result->parts;
       scan["levels"] = outcome.result->levels;
       scan["repairs"] = nlohmann::json::parse(to_json(outcome.result->repairs));
+      scan["preparation"] =
+          nlohmann::json::parse(to_json(outcome.result->preparation, parameters.preparation));
     }
     scans.push_back(std::move(scan));
   }
@@ -138,7 +142,31 @@ void print_json(const std::vector<PlannedJob>& plan, const std::vector<JobOutcom
   print_document(document);
 }
 
-/// One line a scan whose file had to be repaired; then the failures; then the totals.
+std::string in_words(const PreparationResult& preparation) {
+  const kernels::HoleCounts& holes = preparation.holes;
+  std::string text;
+  if (holes.loops > 0) {
+    text = std::to_string(holes.filled) + " of " + std::to_string(holes.loops) + " holes filled";
+    std::string left;
+    const auto add = [&](std::int64_t count, const char* reason) {
+      if (count > 0) left += (left.empty() ? "" : ", ") + std::to_string(count) + " " + reason;
+    };
+    add(holes.outer, "outer");
+    add(holes.too_long, "too long");
+    add(holes.unsplittable, "without a valid split");
+    if (!left.empty()) text += " (left: " + left + ")";
+  }
+  if (preparation.removed_vertices > 0) {
+    char distance[64];
+    std::snprintf(distance, sizeof distance, "%.3g", preparation.distance.maximum);
+    text += (text.empty() ? "" : ", ") + std::to_string(preparation.removed_vertices) +
+            " vertices removed, at most " + distance + " from what is left";
+  }
+  return text.empty() ? "nothing to do" : text;
+}
+
+/// One line a scan whose file had to be repaired, one that was prepared; then the failures; then
+/// the totals.
 void print_text(const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,
                 const RunSummary& summary) {
   for (std::size_t i = 0; i < plan.size(); ++i) {
@@ -152,6 +180,12 @@ void print_text(const std::vector<PlannedJob>& plan, const std::vector<JobOutcom
       changes += (changes.empty() ? "" : ", ") + count.dump() + " " + words;
     }
     std::printf("repaired: %s: %s\n", plan[i].job.name.c_str(), changes.c_str());
+  }
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    const auto& result = outcomes[i].result;
+    if (!result || result->preparation == PreparationResult{}) continue;
+    std::printf("prepared: %s: %s\n", plan[i].job.name.c_str(),
+                in_words(result->preparation).c_str());
   }
   for (const JobOutcome& outcome : outcomes)
     if (outcome.state == JobState::kFailed) std::printf("failed: %s\n", outcome.error.c_str());
@@ -227,7 +261,7 @@ int run(const RunOptions& options, const std::string& effective_config) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   measure_process(summary);
   if (options.json) {
-    print_json(plan, outcomes, summary);
+    print_json(plan, outcomes, options.config.surface, summary);
   } else {
     print_text(plan, outcomes, summary);
   }
@@ -240,18 +274,37 @@ std::string refuse_nan(const std::string& text) {
   return CLI::detail::lexical_cast(text, value) && std::isnan(value) ? "give a number" : "";
 }
 
+/// "0.1" is in mean edge lengths, "0.1mm" in the length unit mm.
+void set_tolerance(const std::string& text, SurfaceParameters& parameters) {
+  if (text.empty()) return;
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const std::string unit(end, text.data() + text.size());
+  if (error != std::errc() || !(value > 0) || !std::isfinite(value))
+    throw CLI::ValidationError("--decimate", "give a positive number, alone or with a unit");
+  if (!unit.empty() && unit != parameters.length_unit)
+    throw CLI::ValidationError("--decimate", "the scans' unit is " + parameters.length_unit +
+                                                 ", not " + unit + "; give --unit " + unit +
+                                                 " if it is");
+  parameters.preparation.decimate = value;
+  parameters.preparation.decimate_in_length_units = !unit.empty();
+}
+
 /// The options that datasets depend on, as --config reads them.
 std::string config_text(const RunOptions& options) {
-  char text[512];
+  char text[1024];
   const SurfaceParameters& p = options.config.surface;
   std::snprintf(text, sizeof text,
                 "# Effective configuration; use it again with --config.\n"
-                "[run]\nlevels = %d\nsurface = \"%s\"\ncoordinates = \"%s\"\nschedule = \"%s\"\n"
+                "[run]\nfill-holes = %lld\ndecimate = \"%s\"\ntarget-vertices = %lld\nlevels = "
+                "%d\nsurface = \"%s\"\ncoordinates = \"%s\"\nschedule = \"%s\"\n"
                 "principal = %s\nstep = %.17g\ncompression = \"%s\"\n"
                 "unit = \"%s\"\n",
-                p.levels, options.surface.c_str(), options.coordinates.c_str(),
-                options.schedule.c_str(), p.evolution.principal ? "true" : "false",
-                p.evolution.step_factor, options.compression.c_str(), p.length_unit.c_str());
+                static_cast<long long>(p.preparation.fill_holes), options.decimate.c_str(),
+                static_cast<long long>(p.preparation.target_vertices), p.levels,
+                options.surface.c_str(), options.coordinates.c_str(), options.schedule.c_str(),
+                p.evolution.principal ? "true" : "false", p.evolution.step_factor,
+                options.compression.c_str(), p.length_unit.c_str());
   return text;
 }
 
@@ -283,6 +336,18 @@ void add_run(CLI::App& app, int& exit_code) {
   command->add_option("-o,--output", config.archive, "The archive: a folder, made if need be")
       ->required()
       ->configurable(false);
+  command
+      ->add_option("--fill-holes", surface.preparation.fill_holes,
+                   "Fill holes of at most so many edges; outer boundaries stay. 0: none")
+      ->check(CLI::Range(0, 1000000));
+  command->add_option("--decimate", options->decimate,
+                      "Remove vertices that lie this close to their surroundings: in mean edge\n"
+                      "lengths (0.1), or in the unit that --unit names (0.05mm)");
+  command
+      ->add_option("--target-vertices", surface.preparation.target_vertices,
+                   "Remove vertices, nearest to their surroundings first, until so many are left.\n"
+                   "0: no limit")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 31));
   command->add_option("--levels", surface.levels, "Smoothing iterations; every level is stored")
       ->check(CLI::Range(0, 999));
   command
@@ -326,6 +391,7 @@ void add_run(CLI::App& app, int& exit_code) {
   command->fallthrough();
   command->callback([options, &exit_code] {
     SurfaceParameters& parameters = options->config.surface;
+    set_tolerance(options->decimate, parameters);
     parameters.evolution.curved = options->surface == "curved";
     if (options->coordinates == "polar")
       parameters.evolution.coordinates = kernels::Coordinates::polar;

@@ -80,8 +80,9 @@ class ParallelEncoder {
   std::vector<Task> tasks_;
 };
 
-io::EncodedConnectivity encode_connectivity(const kernels::Surface& surface,
+io::EncodedConnectivity encode_connectivity(const PreparedSurface& prepared,
                                             ParallelEncoder& encoder) {
+  const kernels::Surface& surface = prepared.surface;
   std::vector<std::int32_t> source(surface.points.size());
   std::iota(source.begin(), source.end(), 0);
   io::EncodedConnectivity encoded;
@@ -89,6 +90,10 @@ io::EncodedConnectivity encode_connectivity(const kernels::Surface& surface,
   encoder.add(io::array_of(std::span<const std::int32_t>(source), io::ElementType::int64),
               encoded.source_vertex);
   encoder.add(io::array_of(std::span<const std::int32_t>(surface.part)), encoded.part);
+  if (!prepared.face_filled.empty()) {
+    encoder.add(io::array_of(std::span(prepared.vertex_filled)), encoded.vertex_filled.emplace());
+    encoder.add(io::array_of(std::span(prepared.face_filled)), encoded.face_filled.emplace());
+  }
   encoder.run();
   return encoded;
 }
@@ -207,9 +212,13 @@ SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters&
     kernels::BuiltSurface built = kernels::build_surface(std::move(scan.mesh));
     check_usable(built.surface, job, built.repairs);
     result.repairs = built.repairs;
-    result.vertices = built.surface.vertex_count();
-    result.triangles = built.surface.face_count();
-    result.parts = built.surface.part_count;
+    PreparedSurface prepared =
+        prepare_surface(std::move(built.surface), parameters.preparation, context);
+    result.preparation = prepared.result;
+    header.preparation_json = to_json(prepared.result, parameters.preparation);
+    result.vertices = prepared.surface.vertex_count();
+    result.triangles = prepared.surface.face_count();
+    result.parts = prepared.surface.part_count;
     result.levels = parameters.levels + 1;
     nlohmann::json repairs = repairs_json(built.repairs);
     repairs["polygons_triangulated"] = scan.polygons_triangulated;
@@ -220,9 +229,9 @@ SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters&
 
     writer = std::make_unique<io::DatasetWriter>(job.output, header, parameters.compression);
     ParallelEncoder encoder(context.workers, parameters.compression);
-    writer->write_connectivity(encode_connectivity(built.surface, encoder));
-    const auto order = kernels::locality_order(built.surface);
-    surface = kernels::reordered(built.surface, order);
+    writer->write_connectivity(encode_connectivity(prepared, encoder));
+    const auto order = kernels::locality_order(prepared.surface);
+    surface = kernels::reordered(prepared.surface, order);
     stored_order = inverse(order);
   }
   EvolvingSurface evolving(std::move(surface), parameters.evolution, context);

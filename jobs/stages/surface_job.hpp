@@ -6,6 +6,7 @@
 #include "engine/run_context.hpp"
 #include "jobs/config.hpp"
 #include "jobs/plan.hpp"
+#include "jobs/stages/prepare_surface.hpp"
 #include "kernels/surface_builder.hpp"
 
 namespace semigeo::jobs {
@@ -18,6 +19,7 @@ struct SurfaceJobResult {
   std::int32_t parts = 0;
   std::int64_t levels = 0;
   kernels::SurfaceRepairs repairs;
+  PreparationResult preparation;
 };
 
 /// Repairs as JSON with sorted keys.

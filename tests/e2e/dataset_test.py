@@ -31,6 +31,7 @@ class SphereDatasetTest(SemigeoTest):
         self.assertEqual(attributes["complete"], 1)
         self.assertEqual(json.loads(attributes["parameters"]),
                          {"compression": "deflate", "coordinates": "semigeodesic",
+                          "decimate": "0.0 edges", "fill_holes": 0, "target_vertices": 0,
                           "length_unit": "mm", "levels": LEVELS, "principal": False,
                           "schedule": "uniform", "step": 1.0, "surface": "curved"})
         for name in ("input_xxh3", "digest", "job_key"):
@@ -101,6 +102,52 @@ class OptionsDatasetTest(SemigeoTest):
                                "principal_curvature_2", "--output", self.folder / "k2.ply")
         self.assertIn("principal_curvature_2", process.stdout)
         self.assertIn("1 checked, 0 broken", self.semigeo("check", self.archive).stdout)
+
+
+class PreparedDatasetTest(SemigeoTest):
+    def holed(self):
+        points, triangles = icosphere(4, RADIUS)
+        keep = ~np.isin(triangles, [20, 100, 150]).any(axis=1)
+        return points, triangles[keep]
+
+    def test_filled_holes_are_marked_in_every_level(self):
+        write_ply(self.scans / "holed.ply", self.holed())
+        process = self.semigeo("run", self.scans, "--output", self.archive, "--levels", 1,
+                               "--fill-holes", 10)
+        self.assertIn("prepared: holed.ply: 3 of 3 holes filled", process.stdout)
+        with h5py.File(self.dataset("holed.ply"), "r") as file:
+            counts = json.loads(file.attrs["preparation"])
+            self.assertEqual(counts["holes_filled"], 3)
+            for level in file["levels"].values():
+                self.assertEqual(level["face_filled"].dtype, np.dtype("u1"))
+                self.assertEqual(np.sum(level["face_filled"]), counts["filled_faces"])
+                self.assertEqual(np.sum(level["vertex_filled"]), counts["filled_vertices"])
+                self.assertEqual(level["patch_completeness"][...].min(), 1)
+            self.assertIn("vertex_filled", file["VTKHDF/PointData"])
+        self.assertIn("1 checked, 0 broken", self.semigeo("check", self.archive).stdout)
+        document = json.loads(self.semigeo("info", self.dataset("holed.ply"), "--json").stdout)
+        self.assertEqual(document["preparation"], counts)
+
+    def test_decimation_by_tolerance_and_by_target(self):
+        write_ply(self.scans / "sphere.ply", icosphere(4, RADIUS))
+        self.run_scans("--levels", 0, "--unit", "mm", "--decimate", "0.05mm")
+        with h5py.File(self.dataset("sphere.ply"), "r") as file:
+            counts = json.loads(file.attrs["preparation"])
+            self.assertEqual(counts["decimation_tolerance"], 0.05)
+            self.assertLess(counts["decimation_distance_maximum"], 0.055)
+            self.assertLess(len(file["levels/000/points"]), 2000)
+        document = self.run_scans("--levels", 0, "--target-vertices", 800)
+        self.assertEqual(document["scans"][0]["preparation"]["removed_vertices"], 1762)
+        with h5py.File(self.dataset("sphere.ply"), "r") as file:
+            self.assertEqual(len(file["levels/000/points"]), 800)
+
+    def test_a_tolerance_in_another_unit_is_refused(self):
+        write_ply(self.scans / "sphere.ply", icosphere(1))
+        for text, word in (("0.1cm", "not cm"), ("fine", "positive"), ("-1", "positive"),
+                           ("nan", "positive")):
+            process = self.semigeo("run", self.scans, "--output", self.archive, "--unit", "mm",
+                                   f"--decimate={text}", code=2)
+            self.assertIn(word, process.stderr)
 
 
 class SeveralPartsDatasetTest(SemigeoTest):

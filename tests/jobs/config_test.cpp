@@ -11,9 +11,14 @@ namespace {
 
 TEST(ConfigTest, ParametersAreJsonWithSortedKeys) {
   EXPECT_EQ(to_json(SurfaceParameters{}),
-            R"({"compression":"deflate","coordinates":"semigeodesic","length_unit":"unknown",)"
-            R"("levels":8,"principal":false,"schedule":"uniform","step":1.0,"surface":"curved"})");
+            R"({"compression":"deflate","coordinates":"semigeodesic","decimate":"0.0 edges",)"
+            R"("fill_holes":0,"length_unit":"unknown","levels":8,"principal":false,)"
+            R"("schedule":"uniform","step":1.0,"surface":"curved","target_vertices":0})");
   const SurfaceParameters other = {.levels = 3,
+                                   .preparation = {.fill_holes = 40,
+                                                   .decimate = 0.25,
+                                                   .decimate_in_length_units = true,
+                                                   .target_vertices = 1993},
                                    .evolution = {.curved = false,
                                                  .coordinates = kernels::Coordinates::polar,
                                                  .schedule = Schedule::octaves,
@@ -22,14 +27,15 @@ TEST(ConfigTest, ParametersAreJsonWithSortedKeys) {
                                    .compression = io::Compression::none,
                                    .length_unit = "m\"m"};
   EXPECT_EQ(to_json(other),
-            R"({"compression":"none","coordinates":"polar","length_unit":"m\"m","levels":3,)"
-            R"("principal":true,"schedule":"octaves","step":0.1,"surface":"flat"})");
+            R"({"compression":"none","coordinates":"polar","decimate":"0.25 length units",)"
+            R"("fill_holes":40,"length_unit":"m\"m","levels":3,"principal":true,)"
+            R"("schedule":"octaves","step":0.1,"surface":"flat","target_vertices":1993})");
 }
 
 TEST(ConfigTest, EveryParameterShows) {
   const SurfaceParameters plain;
   std::set<std::string> texts = {to_json(plain)};
-  for (const int field : {0, 1, 2, 3, 4, 5, 6, 7}) {
+  for (const int field : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}) {
     SurfaceParameters changed;
     if (field == 0) changed.levels = 9;
     if (field == 1) changed.evolution.curved = false;
@@ -38,6 +44,10 @@ TEST(ConfigTest, EveryParameterShows) {
     if (field == 4) changed.length_unit = "mm";
     if (field == 5) changed.evolution.coordinates = kernels::Coordinates::polar;
     if (field == 6) changed.evolution.schedule = Schedule::octaves;
+    if (field >= 8) changed.preparation.decimate = 1;
+    if (field == 9) changed.preparation.decimate_in_length_units = true;
+    if (field == 10) changed.preparation.fill_holes = 3;
+    if (field == 11) changed.preparation.target_vertices = 100;
     if (field == 7) changed.evolution.principal = true;
     EXPECT_TRUE(texts.insert(to_json(changed)).second) << "field " << field;
     EXPECT_TRUE(nlohmann::json::accept(to_json(changed)));

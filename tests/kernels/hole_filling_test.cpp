@@ -237,6 +237,19 @@ TEST(HoleFillingTest, SharedOutItIsTheSame) {
   EXPECT_EQ(shared.counts, whole.counts);
 }
 
+TEST(HoleFillingTest, ALongNoisyRimIsFilled) {
+  const int n = 2000;
+  const double edge = 2 * 3.14159 / n;
+  TriangleMesh mesh = shapes::cylinder(1, 6 * edge, n, 6);
+  for (auto& p : mesh.points) p.z() += 0.1 * std::cos(3 * std::atan2(p.y(), p.x()));
+  shapes::add_noise(mesh, 0.3 * edge, 3);
+  const Surface ring = built(std::move(mesh));
+  const FilledSurface filled = fill_holes(ring, n, {.max_new_vertices = 2000});
+  EXPECT_EQ(filled.counts, counts(2, 1, 1));
+  EXPECT_EQ(euler_characteristic(filled.surface), 1);
+  expect_manifold(filled.surface);
+}
+
 TEST(HoleFillingTest, LargeHolesGetLargerFaces) {
   const Surface open =
       punched(shapes::icosphere(5), [](const auto& p) { return p.z() > std::cos(0.5); });

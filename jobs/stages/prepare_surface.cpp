@@ -1,0 +1,135 @@
+#include "jobs/stages/prepare_surface.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <utility>
+
+#include "kernels/decimation.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+using engine::IndexRange;
+using kernels::Surface;
+
+constexpr std::int64_t kPointBlock = 4096;
+
+void fill(PreparedSurface& prepared, std::int64_t max_edges, const engine::RunContext& context) {
+  const Surface& surface = prepared.surface;
+  const auto loops = kernels::boundary_loops(surface);
+  std::vector<kernels::HolePatch> patches(loops.size());
+  context.workers.for_blocks(static_cast<std::int64_t>(loops.size()), 1, [&](IndexRange range) {
+    for (auto i = range.begin; i < range.end; ++i)
+      if (kernels::fillable(loops[i], max_edges))
+        patches[i] = kernels::make_hole_patch(surface, loops[i].vertices);
+  });
+  kernels::FilledSurface filled = kernels::insert_patches(surface, loops, patches, max_edges);
+  prepared.surface = std::move(filled.surface);
+  prepared.vertex_filled = std::move(filled.vertex_filled);
+  prepared.face_filled = std::move(filled.face_filled);
+  prepared.result.holes = filled.counts;
+}
+
+/// Distances of all points from a surface, block by block.
+kernels::DistanceSummary measure(const kernels::NearestSurface& nearest,
+                                 std::span<const Eigen::Vector3f> points,
+                                 const engine::RunContext& context) {
+  const auto count = static_cast<std::int64_t>(points.size());
+  std::vector<kernels::DistanceSummary> blocks((count + kPointBlock - 1) / kPointBlock);
+  const auto block_count = static_cast<std::int64_t>(blocks.size());
+  context.workers.for_blocks(block_count, 1, [&](IndexRange range) {
+    for (auto b = range.begin; b < range.end; ++b) {
+      const std::int64_t begin = b * kPointBlock;
+      blocks[b] =
+          kernels::distances(nearest, points.subspan(begin, std::min(kPointBlock, count - begin)));
+    }
+  });
+  kernels::DistanceSummary sum;
+  for (const auto& block : blocks) sum.add(block);
+  return sum;
+}
+
+/// Marks of the faces of `after` by the nearest face of `before`.
+std::vector<std::uint8_t> nearest_marks(const Surface& after, const Surface& before,
+                                        const std::vector<std::uint8_t>& marks,
+                                        const engine::RunContext& context) {
+  const kernels::NearestSurface nearest(before);
+  std::vector<std::uint8_t> result(after.triangles.size());
+  context.workers.for_blocks(after.face_count(), kPointBlock, [&](IndexRange range) {
+    for (auto f = range.begin; f < range.end; ++f) {
+      Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+      for (const std::int32_t v : after.triangles[f])
+        centroid += after.points[v].cast<double>() / 3;
+      const std::int32_t face = nearest.nearest(centroid).face;
+      result[f] = face == kernels::kNone ? 0 : marks[face];
+    }
+  });
+  return result;
+}
+
+void decimate(PreparedSurface& prepared, const PreparationOptions& options,
+              const engine::RunContext& context) {
+  PreparationResult& result = prepared.result;
+  if (options.decimate > 0)
+    result.tolerance =
+        options.decimate *
+        (options.decimate_in_length_units ? 1 : kernels::mean_edge_length(prepared.surface));
+  kernels::DecimatedSurface decimated = kernels::decimate(
+      prepared.surface,
+      {.tolerance =
+           result.tolerance > 0 ? result.tolerance : std::numeric_limits<double>::infinity(),
+       .target_vertices = options.target_vertices,
+       .measure = false});
+  result.removed_vertices = decimated.removed_vertices;
+  result.removed_faces = decimated.removed_faces;
+  {
+    const kernels::NearestSurface nearest(decimated.surface);
+    result.distance = measure(nearest, prepared.surface.points, context);
+  }
+  if (!prepared.vertex_filled.empty()) {
+    std::vector<std::uint8_t> marks(decimated.source_vertex.size());
+    for (std::size_t v = 0; v < marks.size(); ++v)
+      marks[v] = prepared.vertex_filled[decimated.source_vertex[v]];
+    prepared.face_filled =
+        nearest_marks(decimated.surface, prepared.surface, prepared.face_filled, context);
+    prepared.vertex_filled = std::move(marks);
+  }
+  prepared.surface = std::move(decimated.surface);
+}
+
+}  // namespace
+
+std::string to_json(const PreparationResult& result, const PreparationOptions& options) {
+  nlohmann::json json = nlohmann::json::object();
+  if (options.fill_holes > 0) {
+    json["holes"] = result.holes.loops;
+    json["holes_filled"] = result.holes.filled;
+    json["holes_left_outer"] = result.holes.outer;
+    json["holes_left_too_long"] = result.holes.too_long;
+    json["holes_left_unsplittable"] = result.holes.unsplittable;
+    json["filled_vertices"] = result.filled_vertices;
+    json["filled_faces"] = result.filled_faces;
+  }
+  if (options.decimates()) {
+    json["removed_vertices"] = result.removed_vertices;
+    json["removed_faces"] = result.removed_faces;
+    json["decimation_tolerance"] = result.tolerance;
+    json["decimation_distance_maximum"] = result.distance.maximum;
+    json["decimation_distance_mean"] = result.distance.mean();
+  }
+  return json.dump();
+}
+
+PreparedSurface prepare_surface(Surface surface, const PreparationOptions& options,
+                                const engine::RunContext& context) {
+  PreparedSurface prepared{std::move(surface), {}, {}, {}};
+  if (options.fill_holes > 0) fill(prepared, options.fill_holes, context);
+  if (options.decimates()) decimate(prepared, options, context);
+  prepared.result.filled_vertices = std::ranges::count(prepared.vertex_filled, 1);
+  prepared.result.filled_faces = std::ranges::count(prepared.face_filled, 1);
+  return prepared;
+}
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/run_context.hpp"
+#include "kernels/hole_filling.hpp"
+#include "kernels/nearest_surface.hpp"
+
+namespace semigeo::jobs {
+
+/// What is to be done to a repaired scan before it is smoothed; nothing by default.
+struct PreparationOptions {
+  std::int64_t fill_holes = 0;            ///< fill holes of at most so many edges; 0: none
+  double decimate = 0;                    ///< tolerance; 0: none
+  bool decimate_in_length_units = false;  ///< else in mean edge lengths
+  std::int64_t target_vertices = 0;       ///< decimate to so many; 0: no limit
+
+  bool decimates() const { return decimate > 0 || target_vertices > 0; }
+  bool any() const { return fill_holes > 0 || decimates(); }
+};
+
+/// What was done.
+struct PreparationResult {
+  kernels::HoleCounts holes;
+  std::int64_t filled_vertices = 0;  ///< that filling made and decimation left
+  std::int64_t filled_faces = 0;
+  std::int64_t removed_vertices = 0;
+  std::int64_t removed_faces = 0;
+  double tolerance = 0;               ///< of the decimation, length units; 0: only a target
+  kernels::DistanceSummary distance;  ///< of the vertices before decimation from what is left
+
+  bool operator==(const PreparationResult&) const = default;
+};
+
+/// As JSON with sorted keys; "{}" if nothing was asked for.
+std::string to_json(const PreparationResult& result, const PreparationOptions& options);
+
+struct PreparedSurface {
+  kernels::Surface surface;
+  std::vector<std::uint8_t> vertex_filled;  ///< (N) 1 = made by filling; empty if not asked for
+  std::vector<std::uint8_t> face_filled;    ///< (F)
+  PreparationResult result;
+};
+
+/// Fills holes, then decimates. A decimated face counts as filled if its centroid lies nearest to
+/// one that was. The result does not depend on the number of threads. Source: thesis 5.1.
+PreparedSurface prepare_surface(kernels::Surface surface, const PreparationOptions& options,
+                                const engine::RunContext& context);
+
+}  // namespace semigeo::jobs
