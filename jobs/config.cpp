@@ -20,6 +20,7 @@ std::string to_json(const SurfaceParameters& parameters) {
       {"length_unit", parameters.length_unit},
       {"levels", parameters.levels},
       {"principal", evolution.principal},
+      {"rescale", evolution.rescale ? "edges" : "none"},
       {"schedule", evolution.schedule == Schedule::octaves ? "octaves" : "uniform"},
       {"step", evolution.step_factor},
       {"surface", evolution.curved ? "curved" : "flat"}}

@@ -30,6 +30,7 @@ struct RunOptions {
   std::string coordinates = "semigeodesic";
   std::string schedule = "uniform";
   std::string decimate;
+  std::string rescale = "edges";
   std::string compression = "deflate";
   bool json = false;
   bool dry_run = false;
@@ -297,14 +298,14 @@ std::string config_text(const RunOptions& options) {
   std::snprintf(text, sizeof text,
                 "# Effective configuration; use it again with --config.\n"
                 "[run]\nfill-holes = %lld\ndecimate = \"%s\"\ntarget-vertices = %lld\nlevels = "
-                "%d\nsurface = \"%s\"\ncoordinates = \"%s\"\nschedule = \"%s\"\n"
+                "%d\nsurface = \"%s\"\ncoordinates = \"%s\"\nschedule = \"%s\"\nrescale = \"%s\"\n"
                 "principal = %s\nstep = %.17g\ncompression = \"%s\"\n"
                 "unit = \"%s\"\n",
                 static_cast<long long>(p.preparation.fill_holes), options.decimate.c_str(),
                 static_cast<long long>(p.preparation.target_vertices), p.levels,
                 options.surface.c_str(), options.coordinates.c_str(), options.schedule.c_str(),
-                p.evolution.principal ? "true" : "false", p.evolution.step_factor,
-                options.compression.c_str(), p.length_unit.c_str());
+                options.rescale.c_str(), p.evolution.principal ? "true" : "false",
+                p.evolution.step_factor, options.compression.c_str(), p.length_unit.c_str());
   return text;
 }
 
@@ -363,6 +364,13 @@ void add_run(CLI::App& app, int& exit_code) {
                    "Sample distance from level to level: the same, as in the thesis, or growing\n"
                    "with the scale reached, so that two levels double it")
       ->check(CLI::IsMember({"uniform", "octaves"}));
+  command
+      ->add_option(
+          "--rescale", options->rescale,
+          "After each uniform smoothing, give each part its mean edge length back, as the\n"
+          "thesis does, or leave it as small as it has become. Noisy scans have too long\n"
+          "edges and grow by it")
+      ->check(CLI::IsMember({"edges", "none"}));
   command->add_flag("--principal", surface.evolution.principal,
                     "Store principal curvatures and their directions as well");
   command
@@ -393,6 +401,7 @@ void add_run(CLI::App& app, int& exit_code) {
     SurfaceParameters& parameters = options->config.surface;
     set_tolerance(options->decimate, parameters);
     parameters.evolution.curved = options->surface == "curved";
+    parameters.evolution.rescale = options->rescale == "edges";
     if (options->coordinates == "polar")
       parameters.evolution.coordinates = kernels::Coordinates::polar;
     if (options->schedule == "octaves") {

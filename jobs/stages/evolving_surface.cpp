@@ -238,8 +238,8 @@ std::vector<EvolvingSurface::PartMeasure> EvolvingSurface::measure_parts() const
   return parts;
 }
 
-/// Rescales each part about its centroid to its mean edge length of level 0 (thesis 5.1), but under
-/// octaves. Result: the mean edge length of the whole surface.
+/// Rescales each part about its centroid to its mean edge length of level 0 (thesis 5.1), if
+/// that is wanted. Result: the mean edge length of the whole surface.
 double EvolvingSurface::restore_size() {
   struct Restoration {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -252,7 +252,7 @@ double EvolvingSurface::restore_size() {
     const PartMeasure& part = parts[i];
     Restoration& r = restorations[i];
     const bool restorable = part.edge_length > 0 && part.area > 0;
-    if (restorable && options_.schedule == Schedule::uniform) {
+    if (restorable && options_.rescale && options_.schedule == Schedule::uniform) {
       r.factor = std::clamp(part_edge_length_[i] / part.mean_edge_length(), 1 / kMaxRestoration,
                             kMaxRestoration);  // 5.1, scale factor
       r.centre = part.moment / (3 * part.area);

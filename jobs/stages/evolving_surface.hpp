@@ -30,14 +30,15 @@ struct LevelFields {
 
 /// How the sampling step grows from level to level.
 enum class Schedule {
-  uniform,  ///< not at all, as in the thesis; each part is rescaled after each smoothing
-  octaves   ///< with the scale reached: two levels double it; nothing is rescaled
+  uniform,  ///< not at all, as in the thesis
+  octaves   ///< with the scale reached: two levels double it; parts are never rescaled
 };
 
 struct EvolutionOptions {
   bool curved = true;  ///< sample quadratic faces; else flat ones, as the thesis does
   kernels::Coordinates coordinates = kernels::Coordinates::semigeodesic;
   Schedule schedule = Schedule::uniform;
+  bool rescale = true;     ///< under `uniform` give parts their mean edge length back (5.1)
   bool principal = false;  ///< principal curvatures as well
   double step_factor = 1;  ///< sample distance of level 0 in its mean edge lengths
 };
@@ -53,7 +54,7 @@ class EvolvingSurface {
                   const engine::RunContext& context);
 
   /// Curvature of the current level; if `move`, the surface is then smoothed by the same patches,
-  /// under the uniform schedule each part is rescaled about its centroid to its first mean edge
+  /// if so wanted each part is rescaled about its centroid to its first mean edge
   /// length, and becomes the next level. Results do not depend on the number of threads. Source:
   /// thesis 5.1, 5.3 - 5.6.
   LevelFields advance(bool move);

@@ -10,10 +10,11 @@ namespace semigeo::jobs {
 namespace {
 
 TEST(ConfigTest, ParametersAreJsonWithSortedKeys) {
-  EXPECT_EQ(to_json(SurfaceParameters{}),
-            R"({"compression":"deflate","coordinates":"semigeodesic","decimate":"0.0 edges",)"
-            R"("fill_holes":0,"length_unit":"unknown","levels":8,"principal":false,)"
-            R"("schedule":"uniform","step":1.0,"surface":"curved","target_vertices":0})");
+  EXPECT_EQ(
+      to_json(SurfaceParameters{}),
+      R"({"compression":"deflate","coordinates":"semigeodesic","decimate":"0.0 edges",)"
+      R"("fill_holes":0,"length_unit":"unknown","levels":8,"principal":false,)"
+      R"("rescale":"edges","schedule":"uniform","step":1.0,"surface":"curved","target_vertices":0})");
   const SurfaceParameters other = {.levels = 3,
                                    .preparation = {.fill_holes = 40,
                                                    .decimate = 0.25,
@@ -22,20 +23,22 @@ TEST(ConfigTest, ParametersAreJsonWithSortedKeys) {
                                    .evolution = {.curved = false,
                                                  .coordinates = kernels::Coordinates::polar,
                                                  .schedule = Schedule::octaves,
+                                                 .rescale = false,
                                                  .principal = true,
                                                  .step_factor = 0.1},
                                    .compression = io::Compression::none,
                                    .length_unit = "m\"m"};
-  EXPECT_EQ(to_json(other),
-            R"({"compression":"none","coordinates":"polar","decimate":"0.25 length units",)"
-            R"("fill_holes":40,"length_unit":"m\"m","levels":3,"principal":true,)"
-            R"("schedule":"octaves","step":0.1,"surface":"flat","target_vertices":1993})");
+  EXPECT_EQ(
+      to_json(other),
+      R"({"compression":"none","coordinates":"polar","decimate":"0.25 length units",)"
+      R"("fill_holes":40,"length_unit":"m\"m","levels":3,"principal":true,)"
+      R"("rescale":"none","schedule":"octaves","step":0.1,"surface":"flat","target_vertices":1993})");
 }
 
 TEST(ConfigTest, EveryParameterShows) {
   const SurfaceParameters plain;
   std::set<std::string> texts = {to_json(plain)};
-  for (const int field : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}) {
+  for (const int field : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}) {
     SurfaceParameters changed;
     if (field == 0) changed.levels = 9;
     if (field == 1) changed.evolution.curved = false;
@@ -47,6 +50,7 @@ TEST(ConfigTest, EveryParameterShows) {
     if (field >= 8) changed.preparation.decimate = 1;
     if (field == 9) changed.preparation.decimate_in_length_units = true;
     if (field == 10) changed.preparation.fill_holes = 3;
+    if (field == 12) changed.evolution.rescale = false;
     if (field == 11) changed.preparation.target_vertices = 100;
     if (field == 7) changed.evolution.principal = true;
     EXPECT_TRUE(texts.insert(to_json(changed)).second) << "field " << field;

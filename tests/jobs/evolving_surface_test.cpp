@@ -217,6 +217,21 @@ TEST(EvolvingSurfaceTest, StaysInItsConvexHullButForTheRescaling_Theorem2) {
     EXPECT_LT((centre + factor * (smoothed[v] - centre) - evolved.point(1, order[v])).norm(), 2e-6);
 }
 
+// Noise lengthens edges; restoring their mean then blows the surface up.
+TEST(EvolvingSurfaceTest, WithoutRescalingANoisySphereKeepsItsSize) {
+  TriangleMesh mesh = shapes::icosphere(5);
+  shapes::add_noise(mesh, 0.008, 11);
+  const auto radius = [](const EvolvedMesh& evolved) {
+    double mean = 0;
+    for (const Vector3f& p : evolved.levels[4].points) mean += p.norm();
+    return mean / static_cast<double>(evolved.levels[4].points.size());
+  };
+  const EvolvedMesh plain = evolve_mesh(mesh, 4, {.rescale = false});
+  const double step = plain.levels[0].step;
+  EXPECT_NEAR(radius(plain), std::sqrt(1 - 2 * 4 * step * step), 2e-3);
+  EXPECT_GT(radius(evolve_mesh(mesh, 4)), 1.03);
+}
+
 double mean_edge_length(const TriangleMesh& mesh) {
   return kernels::mean_edge_length(kernels::build_surface(TriangleMesh(mesh)).surface);
 }
