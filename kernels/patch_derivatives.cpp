@@ -3,12 +3,9 @@
 #include "kernels/savitzky_golay.hpp"
 
 namespace semigeo::kernels {
-namespace {
 
-using Taps = std::array<float, kTaps>;
-
-PatchDerivatives correlate(const Patch& patch, float step, const Taps& value, const Taps& first,
-                           const Taps& second) {
+PatchDerivatives convolve(const Patch& patch, float step) {
+  const GaussianFilters& g = gaussian_filters();
   Eigen::Vector4f r, ru, rv, ruu, ruv, rvv;
   r = ru = rv = ruu = ruv = rvv = Eigen::Vector4f::Zero();
   for (int c = 0; c < kTaps; ++c) {
@@ -17,16 +14,16 @@ PatchDerivatives correlate(const Patch& patch, float step, const Taps& value, co
     s0 = s1 = s2 = Eigen::Vector4f::Zero();
     for (int k = 0; k < kTaps; ++k) {
       const Eigen::Vector4f& p = patch.sample[c][k];
-      s0 += value[k] * p;
-      s1 += first[k] * p;
-      s2 += second[k] * p;
+      s0 += g.smooth[k] * p;
+      s1 += g.first[k] * p;
+      s2 += g.second[k] * p;
     }
-    r += value[c] * s0;
-    ru += first[c] * s0;
-    ruu += second[c] * s0;
-    rv += value[c] * s1;
-    ruv += first[c] * s1;
-    rvv += value[c] * s2;
+    r += g.smooth[c] * s0;
+    ru += g.first[c] * s0;
+    ruu += g.second[c] * s0;
+    rv += g.smooth[c] * s1;
+    ruv += g.first[c] * s1;
+    rvv += g.smooth[c] * s2;
   }
   const float s1 = 1 / step;
   const float s2 = s1 * s1;
@@ -34,16 +31,22 @@ PatchDerivatives correlate(const Patch& patch, float step, const Taps& value, co
           ruu.head<3>() * s2, ruv.head<3>() * s2, rvv.head<3>() * s2};
 }
 
-}  // namespace
-
-PatchDerivatives convolve(const Patch& patch, float step) {
-  const GaussianFilters& g = gaussian_filters();
-  return correlate(patch, step, g.smooth, g.first, g.second);
-}
-
 PatchDerivatives fit(const Patch& patch, float step) {
-  const SavitzkyGolayFilters& s = savitzky_golay_filters();
-  return correlate(patch, step, s.value, s.first, s.second);
+  Eigen::Vector4f ru, rv, ruu, ruv, rvv;
+  ru = rv = ruu = ruv = rvv = Eigen::Vector4f::Zero();
+  const Eigen::Vector4f* samples = patch.sample.front().data();
+  for (const SavitzkyGolayFilters::Tap& tap : savitzky_golay_filters().taps()) {
+    const Eigen::Vector4f& p = samples[tap.sample];
+    ru += tap.u * p;
+    rv += tap.v * p;
+    ruu += tap.uu * p;
+    ruv += tap.uv * p;
+    rvv += tap.vv * p;
+  }
+  const float s1 = 1 / step;
+  const float s2 = s1 * s1;
+  return {Eigen::Vector3f::Zero(), ru.head<3>() * s1,  rv.head<3>() * s1,
+          ruu.head<3>() * s2,      ruv.head<3>() * s2, rvv.head<3>() * s2};
 }
 
 }  // namespace semigeo::kernels

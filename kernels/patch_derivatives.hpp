@@ -16,7 +16,8 @@ struct PatchDerivatives {
 /// R = r * G, R_u = r * G_u and so on. Source: thesis (4.4), (4.11).
 PatchDerivatives convolve(const Patch& patch, float step);
 
-/// Of the surface itself: a whole patch under the Savitzky-Golay filters. Differs: see there.
+/// Of the surface itself, but for r, which is zero: a whole patch under the Savitzky-Golay filters.
+/// Differs: see there.
 PatchDerivatives fit(const Patch& patch, float step);
 
 }  // namespace semigeo::kernels

@@ -1,48 +1,32 @@
 #include "kernels/savitzky_golay.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
 
+#include "kernels/derivative_filters.hpp"
+
 namespace semigeo::kernels {
-namespace {
 
-SavitzkyGolayFilters make_filters() {
-  std::array<double, kTaps> weight{};
-  std::array<double, 9> moment{};  // sum of weight * u^p; odd ones vanish
-  for (int k = 0; k < kTaps; ++k) {
-    const double u = k - kReach;
-    weight[k] = std::exp(-u * u / (2 * kFitSigma * kFitSigma));
-    for (int p = 0; p <= 8; p += 2) moment[p] += weight[k] * std::pow(u, p);
+SavitzkyGolayFilters::SavitzkyGolayFilters() {
+  PatchSamples samples;
+  for (int c = 0; c < kTaps; ++c)
+    for (int r = 0; r < kTaps; ++r) {
+      const int u = c - kReach;
+      const int v = r - kReach;
+      if (std::hypot(u, v) > kFitRadius) continue;
+      taps_[samples.size()].sample = c * kTaps + r;
+      samples.push_back({static_cast<float>(u), static_cast<float>(v), 1, Eigen::Vector4f::Zero()});
+    }
+  const DerivativeFilters filters = quartic_filters(samples, kFitSigma, 0).value();
+  count_ = samples.size();
+  for (std::size_t i = 0; i < count_; ++i) {
+    const auto weights = filters.row(static_cast<Eigen::Index>(i)).cast<float>().eval();
+    taps_[i] = {taps_[i].sample, weights[0], weights[1], weights[2], weights[3], weights[4]};
   }
-  const auto& m = moment;
-  // A filter is weight times a polynomial, even or odd as its derivative, of the fit's degree. Its
-  // coefficients follow from the moments that it must have.
-  const Eigen::Vector2d value =
-      (Eigen::Matrix2d() << m[0], m[2], m[2], m[4]).finished().inverse() * Eigen::Vector2d(1, 0);
-  const Eigen::Vector2d first =
-      (Eigen::Matrix2d() << m[2], m[4], m[4], m[6]).finished().inverse() * Eigen::Vector2d(1, 0);
-  const Eigen::Vector3d second =
-      (Eigen::Matrix3d() << m[0], m[2], m[4], m[2], m[4], m[6], m[4], m[6], m[8])
-          .finished()
-          .inverse() *
-      Eigen::Vector3d(0, 2, 0);
-
-  SavitzkyGolayFilters filters{};
-  for (int k = 0; k < kTaps; ++k) {
-    const double u = k - kReach;
-    const double u2 = u * u;
-    filters.value[k] = static_cast<float>(weight[k] * (value[0] + value[1] * u2));
-    filters.first[k] = static_cast<float>(weight[k] * u * (first[0] + first[1] * u2));
-    filters.second[k] =
-        static_cast<float>(weight[k] * (second[0] + second[1] * u2 + second[2] * u2 * u2));
-  }
-  return filters;
+  noise_ = filters.col(2).squaredNorm();
 }
 
-}  // namespace
-
 const SavitzkyGolayFilters& savitzky_golay_filters() {
-  static const SavitzkyGolayFilters filters = make_filters();
+  static const SavitzkyGolayFilters filters;
   return filters;
 }
 

@@ -1,23 +1,38 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "kernels/gaussian.hpp"
 
 namespace semigeo::kernels {
 
-/// Sigma, in steps, of the weights of the least squares behind the filters. At 2 they let pass as
-/// much noise as the derivatives of the Gaussian of sigma 1 do: 0.26 against 0.25 of the points'
-/// noise in r_uu, 0.14 against 0.14 in r_uv, per step^2.
+/// Sigma, in steps, of the weights of the least squares behind the filters, and the radius within
+/// which samples count. With these they let pass a little less noise than the derivatives of the
+/// Gaussian of sigma 1 do: 0.23 against 0.25 of the points' noise in r_uu, 0.13 against 0.14 in
+/// r_uv, per step^2.
 inline constexpr double kFitSigma = 2;
+inline constexpr double kFitRadius = 4.5;
 
-/// The 1-D factors of the derivative filters over 9 taps, for unit sample distance: value and
-/// derivatives at the middle of the polynomial that fits the samples best, by least squares with
-/// Gaussian weights. Correlations, as `GaussianFilters`.
-struct SavitzkyGolayFilters {
-  std::array<float, kTaps> value;   ///< exact on polynomials of degree 3
-  std::array<float, kTaps> first;   ///< exact on polynomials of degree 4
-  std::array<float, kTaps> second;  ///< exact on polynomials of degree 5
+/// Derivative filters over a whole patch, for unit step: the derivatives at the vertex of the
+/// polynomial of degree 4 that fits the samples best, by least squares with Gaussian weights over a
+/// disc. Exact on polynomials of degree 4.
+class SavitzkyGolayFilters {
+ public:
+  struct Tap {
+    int sample;  ///< column * kTaps + row
+    float u, v, uu, uv, vv;
+  };
+
+  SavitzkyGolayFilters();
+  std::span<const Tap> taps() const { return {taps_.data(), count_}; }
+  /// Variance of r_uu for samples with noise of variance 1.
+  double noise() const { return noise_; }
+
+ private:
+  std::array<Tap, kTaps * kTaps> taps_{};
+  std::size_t count_ = 0;
+  double noise_ = 0;
 };
 
 /// Differs: the thesis differentiates the smoothed surface (4.11), whose curvature is off by

@@ -12,19 +12,6 @@ constexpr double kMinQuarticPivot = 1e-8;
 /// samples the fit extrapolates, and far samples add more bias than they take noise.
 constexpr double kRimSigma = 1.4;
 
-double squared_norm(const std::array<float, kTaps>& filter) {
-  double sum = 0;
-  for (const float tap : filter) sum += static_cast<double>(tap) * tap;
-  return sum;
-}
-
-/// Variance of a whole patch's r_uu for unit noise of the samples and unit step.
-double whole_variance() {
-  static const double variance =
-      squared_norm(savitzky_golay_filters().second) * squared_norm(savitzky_golay_filters().value);
-  return variance;
-}
-
 }  // namespace
 
 std::optional<PatchDerivatives> fit_quadratic(const PatchSamples& samples, float step) {
@@ -37,7 +24,8 @@ std::optional<PatchDerivatives> fit_quartic(const PatchSamples& samples, float s
   const auto filters = quartic_filters(samples, kRimSigma, kMinQuarticPivot);
   if (!filters) return std::nullopt;
   const double variance = filters->rightCols<3>().colwise().squaredNorm().maxCoeff();
-  if (!(variance <= kMaxNoiseGain * kMaxNoiseGain * whole_variance())) return std::nullopt;
+  if (!(variance <= kMaxNoiseGain * kMaxNoiseGain * savitzky_golay_filters().noise()))
+    return std::nullopt;
   return apply(*filters, samples, step);
 }
 
