@@ -8,11 +8,11 @@
 namespace semigeo::kernels {
 
 /// Sigma, in steps, of the weights of the least squares behind the filters, and the radius within
-/// which samples count. With these they let pass a little less noise than the derivatives of the
-/// Gaussian of sigma 1 do: 0.23 against 0.25 of the points' noise in r_uu, 0.13 against 0.14 in
+/// which samples count. With these they let pass about as much noise as the derivatives of the
+/// Gaussian of sigma 1 do: 0.30 against 0.25 of the points' noise in r_uu, 0.17 against 0.14 in
 /// r_uv, per step^2.
-inline constexpr double kFitSigma = 2;
-inline constexpr double kFitRadius = 4.5;
+inline constexpr double kFitSigma = 1.6;
+inline constexpr double kFitRadius = 4.3;
 
 /// Derivative filters over a whole patch, for unit step: the derivatives at the vertex of the
 /// polynomial of degree 4 that fits the samples best, by least squares with Gaussian weights over a

@@ -119,8 +119,8 @@ TEST(EvolutionTest, SaddleCurvatureConverges) {
 TEST(EvolutionTest, FlatFacesAreBiasedAtAnyResolution) {
   for (const int levels : {5, 6}) {
     const MedianErrors e = level_zero_errors(shapes::icosphere(levels), unit_sphere, false);
-    EXPECT_NEAR(e.gaussian, 0.037, 0.005);
-    EXPECT_NEAR(e.mean, 0.018, 0.003);
+    EXPECT_NEAR(e.gaussian, 0.050, 0.005);
+    EXPECT_NEAR(e.mean, 0.025, 0.003);
   }
 }
 
