@@ -38,9 +38,10 @@ struct EvolvedVertex {
 
 /// Traces the patch of vertex v once and draws everything from it: K and H, the position on the
 /// next level, and the normal there. An invalid vertex still moves as far as its samples say, but
-/// keeps its normal. All results are finite. Source: thesis 5.3 - 5.6. Differs: on curved faces K
-/// and H are those of the surface itself, from the full fundamental forms; on flat ones, as in the
-/// thesis, those of the smoothed surface.
+/// keeps its normal. All results are finite.
+/// Source: thesis 5.3 - 5.6. Differs: K and H are those of the surface itself, not of the smoothed
+/// one, and come from the full fundamental forms, except for semigeodesic patches on flat faces,
+/// which follow the thesis' (4.9) and (4.10).
 EvolvedVertex evolve_vertex(const SampledSurface& surface, std::int32_t v,
                             const PatchLayout& layout);
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "kernels/z_order.hpp"
+
 namespace semigeo::kernels {
 namespace {
 
@@ -21,16 +23,6 @@ Eigen::Vector3d nearest_on_segment(const Eigen::Vector3d& p, const Eigen::Vector
   const double length2 = along.squaredNorm();
   const double t = length2 > 0 ? std::clamp((p - a).dot(along) / length2, 0.0, 1.0) : 0.0;
   return a + t * along;
-}
-
-/// Two zeros before each of the lower bits.
-std::uint64_t spread(std::uint64_t x) {
-  x = (x | x << 32) & 0x001F00000000FFFFu;
-  x = (x | x << 16) & 0x001F0000FF0000FFu;
-  x = (x | x << 8) & 0x100F00F00F00F00Fu;
-  x = (x | x << 4) & 0x10C30C30C30C30C3u;
-  x = (x | x << 2) & 0x1249249249249249u;
-  return x;
 }
 
 std::vector<std::int32_t> z_order(const Surface& surface) {
@@ -52,7 +44,7 @@ std::vector<std::int32_t> z_order(const Surface& surface) {
       const double middle = (static_cast<double>(surface.points[t[0]][c]) +
                              surface.points[t[1]][c] + surface.points[t[2]][c]) /
                             3;
-      key |= spread(static_cast<std::uint64_t>((middle - low[c]) * scale)) << c;
+      key |= spread_bits(static_cast<std::uint64_t>((middle - low[c]) * scale)) << c;
     }
     keys[f] = {key, f};
   }

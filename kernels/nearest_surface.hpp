@@ -23,7 +23,7 @@ Eigen::Vector3d nearest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vecto
 
 /// Finds the face of a surface that is nearest to a point: a tree of boxes over faces sorted along
 /// a Z-order curve. Build: O(F log F), 0.3 us a face; memory 36 bytes a face besides the surface. A
-/// query costs about 1 us near the surface. Distances are exact up to rounding in double precision.
+/// query costs 3 to 9 us without a limit. Distances are exact up to rounding in double precision.
 /// Queries may run at the same time.
 class NearestSurface {
  public:

@@ -22,7 +22,7 @@ enum class PlateRole : std::uint8_t {
 /// in `points`, kept positive, so a second call is better where the first changed the shape much;
 /// ties draw towards `targets`. False, and nothing moved, if the equations cannot be solved or a
 /// vertex would move farther than three times the radius of the mesh from its centroid. Cost: one
-/// sparse factorisation, about 30 us a vertex.
+/// sparse factorisation.
 bool fair_plate(std::vector<Eigen::Vector3d>& points, std::span<const Eigen::Vector3d> targets,
                 std::span<const PlateRole> roles,
                 std::span<const std::array<std::int32_t, 3>> triangles, double wave_length);

@@ -47,6 +47,17 @@ double angle(int ray) {
   return 2 * std::numbers::pi * ray / kRays;
 }
 
+/// (cos, sin) of every ray's angle.
+const std::array<Eigen::Vector2f, kRays>& ray_directions() {
+  static const std::array<Eigen::Vector2f, kRays> directions = [] {
+    std::array<Eigen::Vector2f, kRays> d;
+    for (int j = 0; j < kRays; ++j)
+      d[j] = {static_cast<float>(std::cos(angle(j))), static_cast<float>(std::sin(angle(j)))};
+    return d;
+  }();
+  return directions;
+}
+
 /// Filters for a whole patch, made once; `samples()` of every whole patch has the same order.
 DerivativeFilters whole_filters(bool fitted) {
   PolarPatch patch;
@@ -92,12 +103,11 @@ PatchSamples PolarPatch::samples() const {
   PatchSamples samples;
   samples.push_back({0, 0, std::numbers::pi_v<float> / 4, Eigen::Vector4f::Zero()});
   for (int j = 0; j < kRays; ++j) {
-    const auto c = static_cast<float>(std::cos(angle(j)));
-    const auto s = static_cast<float>(std::sin(angle(j)));
+    const Eigen::Vector2f& d = ray_directions()[j];
     for (int k = 1; k <= reach[j]; ++k) {
       const auto radius = static_cast<float>(k);
-      samples.push_back(
-          {radius * c, radius * s, static_cast<float>(angle(1)) * radius, sample[j][k - 1]});
+      samples.push_back({radius * d.x(), radius * d.y(), static_cast<float>(angle(1)) * radius,
+                         sample[j][k - 1]});
     }
   }
   return samples;
@@ -126,10 +136,10 @@ void trace_polar_patch(const SampledSurface& surface, std::int32_t v, std::int32
   const Eigen::Vector3f along = edge - edge.dot(w) * w;
   const Eigen::Vector3f across = w.cross(edge);
   for (int j = 0; j < kRays; ++j) {
-    const auto c = static_cast<float>(std::cos(angle(j)));
-    const auto s = static_cast<float>(std::sin(angle(j)));
-    const Ray start = j == 0 ? Ray{{first, 0, 0}, 1 / length, 0}
-                             : ray_from_vertex(mesh, v, c * along + s * across);  // 5.4: N about W
+    const Eigen::Vector2f& d = ray_directions()[j];
+    const Ray start =
+        j == 0 ? Ray{{first, 0, 0}, 1 / length, 0}
+               : ray_from_vertex(mesh, v, d.x() * along + d.y() * across);  // 5.4: N about W
     GeodesicLine line(mesh, start);
     while (patch.reach[j] < kReach && line.advance(step)) {
       patch.sample[j][patch.reach[j]] = sample_position(surface, line.ray().at, centre);

@@ -3,21 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "kernels/z_order.hpp"
+
 namespace semigeo::kernels {
-namespace {
-
-/// Spreads the low 21 bits of x so that two zero bits follow each.
-std::uint64_t spread(std::uint64_t x) {
-  x &= 0x1fffff;
-  x = (x | x << 32) & 0x1f00000000ffffu;
-  x = (x | x << 16) & 0x1f0000ff0000ffu;
-  x = (x | x << 8) & 0x100f00f00f00f00fu;
-  x = (x | x << 4) & 0x10c30c30c30c30c3u;
-  x = (x | x << 2) & 0x1249249249249249u;
-  return x;
-}
-
-}  // namespace
 
 std::vector<std::int32_t> locality_order(const Surface& surface) {
   if (surface.points.empty()) return {};
@@ -38,9 +26,9 @@ std::vector<std::int32_t> locality_order(const Surface& surface) {
   std::vector<Key> keys(surface.points.size());
   for (std::size_t v = 0; v < keys.size(); ++v) {
     const Eigen::Vector3d q = (surface.points[v] - low).cast<double>() * cells;
-    const std::uint64_t code = spread(static_cast<std::uint64_t>(q.x())) |
-                               spread(static_cast<std::uint64_t>(q.y())) << 1 |
-                               spread(static_cast<std::uint64_t>(q.z())) << 2;
+    const std::uint64_t code = spread_bits(static_cast<std::uint64_t>(q.x())) |
+                               spread_bits(static_cast<std::uint64_t>(q.y())) << 1 |
+                               spread_bits(static_cast<std::uint64_t>(q.z())) << 2;
     keys[v] = {surface.part[v], static_cast<std::int32_t>(v), code};
   }
   std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {

@@ -309,6 +309,91 @@ std::string config_text(const RunOptions& options) {
   return text;
 }
 
+/// What is done to a scan before it is smoothed.
+void add_preparation_options(CLI::App* command, RunOptions& options) {
+  SurfaceParameters& surface = options.config.surface;
+  command
+      ->add_option("--fill-holes", surface.preparation.fill_holes,
+                   "Fill holes of at most so many edges; outer boundaries stay. 0: none")
+      ->check(CLI::Range(0, 1000000));
+  command->add_option("--decimate", options.decimate,
+                      "Remove vertices that lie this close to their surroundings: in mean edge\n"
+                      "lengths (0.1), or in the unit that --unit names (0.05mm)");
+  command
+      ->add_option("--target-vertices", surface.preparation.target_vertices,
+                   "Remove vertices, nearest to their surroundings first, until so many are left.\n"
+                   "0: no limit")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 31));
+}
+
+/// Levels, patches and steps.
+void add_evolution_options(CLI::App* command, RunOptions& options) {
+  SurfaceParameters& surface = options.config.surface;
+  command->add_option("--levels", surface.levels, "Smoothing iterations; every level is stored")
+      ->check(CLI::Range(0, 999));
+  command
+      ->add_option("--surface", options.surface,
+                   "What patches sample: quadratic faces, or flat ones as in the thesis")
+      ->check(CLI::IsMember({"curved", "flat"}));
+  command
+      ->add_option("--coordinates", options.coordinates,
+                   "How patches are laid: a base line and its perpendiculars, or rays")
+      ->check(CLI::IsMember({"semigeodesic", "polar"}));
+  command
+      ->add_option("--schedule", options.schedule,
+                   "Sample distance from level to level: the same, as in the thesis, or growing\n"
+                   "with the scale reached, so that two levels double it")
+      ->check(CLI::IsMember({"uniform", "octaves"}));
+  command
+      ->add_option(
+          "--rescale", options.rescale,
+          "After each uniform smoothing, give each part its mean edge length back, as the\n"
+          "thesis does, or leave it as small as it has become. Noisy scans have too long\n"
+          "edges and grow by it")
+      ->check(CLI::IsMember({"edges", "none"}));
+  command->add_flag("--principal", surface.evolution.principal,
+                    "Store principal curvatures and their directions as well");
+  command
+      ->add_option("--step", surface.evolution.step_factor,
+                   "Sample distance of patches at level 0, in mean edge lengths")
+      ->check(CLI::Range(0.05, 20.0))
+      ->check(refuse_nan);
+}
+
+/// How datasets are stored and labelled.
+void add_storage_options(CLI::App* command, RunOptions& options) {
+  SurfaceParameters& surface = options.config.surface;
+  command->add_option("--compression", options.compression, "Of the stored arrays")
+      ->check(CLI::IsMember({"deflate", "none"}));
+  command->add_option("--unit", surface.length_unit, "Length unit of the scans, as a label")
+      ->check([](const std::string& unit) -> std::string {
+        if (!io::is_utf8(unit)) return "is not UTF-8; give a short name such as mm or inch";
+        const bool plain = !unit.empty() && unit.size() <= 32 &&
+                           unit.find_first_of("\"\\\n\r\t") == std::string::npos;
+        return plain ? std::string() : "give a short name such as mm or inch";
+      });
+}
+
+/// Turns the words that were given into parameters.
+void apply_words(RunOptions& options) {
+  SurfaceParameters& parameters = options.config.surface;
+  set_tolerance(options.decimate, parameters);
+  parameters.evolution.curved = options.surface == "curved";
+  parameters.evolution.rescale = options.rescale == "edges";
+  if (options.coordinates == "polar")
+    parameters.evolution.coordinates = kernels::Coordinates::polar;
+  if (options.schedule == "octaves") {
+    parameters.evolution.schedule = Schedule::octaves;
+    if (parameters.levels > kMostOctaveLevels)
+      throw CLI::ValidationError("--levels",
+                                 "two levels of --schedule octaves double the scale; "
+                                 "give at most " +
+                                     std::to_string(kMostOctaveLevels));
+  }
+  options.config.surface.compression =
+      options.compression == "deflate" ? io::Compression::deflate : io::Compression::none;
+}
+
 }  // namespace
 
 void add_run(CLI::App& app, int& exit_code) {
@@ -327,7 +412,6 @@ void add_run(CLI::App& app, int& exit_code) {
       "failed,\n"
       "2 usage.\n");
   RunConfig& config = options->config;
-  SurfaceParameters& surface = config.surface;
   command
       ->add_option("scans", config.inputs,
                    "Scans (.ply .obj .off .stl, each also .gz) and folders of them")
@@ -337,56 +421,9 @@ void add_run(CLI::App& app, int& exit_code) {
   command->add_option("-o,--output", config.archive, "The archive: a folder, made if need be")
       ->required()
       ->configurable(false);
-  command
-      ->add_option("--fill-holes", surface.preparation.fill_holes,
-                   "Fill holes of at most so many edges; outer boundaries stay. 0: none")
-      ->check(CLI::Range(0, 1000000));
-  command->add_option("--decimate", options->decimate,
-                      "Remove vertices that lie this close to their surroundings: in mean edge\n"
-                      "lengths (0.1), or in the unit that --unit names (0.05mm)");
-  command
-      ->add_option("--target-vertices", surface.preparation.target_vertices,
-                   "Remove vertices, nearest to their surroundings first, until so many are left.\n"
-                   "0: no limit")
-      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 31));
-  command->add_option("--levels", surface.levels, "Smoothing iterations; every level is stored")
-      ->check(CLI::Range(0, 999));
-  command
-      ->add_option("--surface", options->surface,
-                   "What patches sample: quadratic faces, or flat ones as in the thesis")
-      ->check(CLI::IsMember({"curved", "flat"}));
-  command
-      ->add_option("--coordinates", options->coordinates,
-                   "How patches are laid: a base line and its perpendiculars, or rays")
-      ->check(CLI::IsMember({"semigeodesic", "polar"}));
-  command
-      ->add_option("--schedule", options->schedule,
-                   "Sample distance from level to level: the same, as in the thesis, or growing\n"
-                   "with the scale reached, so that two levels double it")
-      ->check(CLI::IsMember({"uniform", "octaves"}));
-  command
-      ->add_option(
-          "--rescale", options->rescale,
-          "After each uniform smoothing, give each part its mean edge length back, as the\n"
-          "thesis does, or leave it as small as it has become. Noisy scans have too long\n"
-          "edges and grow by it")
-      ->check(CLI::IsMember({"edges", "none"}));
-  command->add_flag("--principal", surface.evolution.principal,
-                    "Store principal curvatures and their directions as well");
-  command
-      ->add_option("--step", surface.evolution.step_factor,
-                   "Sample distance of patches at level 0, in mean edge lengths")
-      ->check(CLI::Range(0.05, 20.0))
-      ->check(refuse_nan);
-  command->add_option("--compression", options->compression, "Of the stored arrays")
-      ->check(CLI::IsMember({"deflate", "none"}));
-  command->add_option("--unit", surface.length_unit, "Length unit of the scans, as a label")
-      ->check([](const std::string& unit) -> std::string {
-        if (!io::is_utf8(unit)) return "is not UTF-8; give a short name such as mm or inch";
-        const bool plain = !unit.empty() && unit.size() <= 32 &&
-                           unit.find_first_of("\"\\\n\r\t") == std::string::npos;
-        return plain ? std::string() : "give a short name such as mm or inch";
-      });
+  add_preparation_options(command, *options);
+  add_evolution_options(command, *options);
+  add_storage_options(command, *options);
   command->add_option("--threads", config.threads, "Threads at once; 0: one per core")
       ->check(CLI::Range(0, 4096));
   command->add_flag("--json", options->json, "Results as JSON on stdout")->configurable(false);
@@ -398,22 +435,7 @@ void add_run(CLI::App& app, int& exit_code) {
       ->configurable(false);
   command->fallthrough();
   command->callback([options, &exit_code] {
-    SurfaceParameters& parameters = options->config.surface;
-    set_tolerance(options->decimate, parameters);
-    parameters.evolution.curved = options->surface == "curved";
-    parameters.evolution.rescale = options->rescale == "edges";
-    if (options->coordinates == "polar")
-      parameters.evolution.coordinates = kernels::Coordinates::polar;
-    if (options->schedule == "octaves") {
-      parameters.evolution.schedule = Schedule::octaves;
-      if (parameters.levels > kMostOctaveLevels)
-        throw CLI::ValidationError("--levels",
-                                   "two levels of --schedule octaves double the scale; "
-                                   "give at most " +
-                                       std::to_string(kMostOctaveLevels));
-    }
-    options->config.surface.compression =
-        options->compression == "deflate" ? io::Compression::deflate : io::Compression::none;
+    apply_words(*options);
     exit_code = run(*options, config_text(*options));
   });
 }

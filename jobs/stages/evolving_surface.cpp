@@ -88,7 +88,7 @@ kernels::PatchLayout EvolvingSurface::layout() const {
           .principal = options_.principal};
 }
 
-/// A half-line may cross as many more faces as it is longer.
+/// Half-lines of steps beyond four edges may cross as many more faces as they are longer.
 void EvolvingSurface::set_step(double step) {
   step_ = step;
   const double edges = mean_edge_length_ > 0 ? step / mean_edge_length_ : 1;
