@@ -99,6 +99,9 @@ LevelInfo Dataset::level(int level) const {
   info.scale = attribute<double>(file_, path, "scale");
   info.mean_edge_length = attribute<double>(file_, path, "mean_edge_length");
   info.parts = attribute<std::int64_t>(file_, path, "parts");
+  info.shortest_side = attribute<double>(file_, path, "shortest_side");
+  for (const LevelCount& count : kLevelCounts)
+    info.*count.count = attribute<std::int64_t>(file_, path, count.name);
   info.vertices = file_.open_array(path + "/points").shape().rows;
   info.triangles = file_.open_array(path + "/triangles").shape().rows;
   for (const LevelArray& array : kLevelArrays) {

@@ -11,7 +11,7 @@ namespace semigeo::io {
 // What the writer and the reader of a dataset agree on; io/DATASET.md is its description.
 
 inline constexpr const char* kDatasetFormat = "semigeo-dataset";
-inline constexpr std::int64_t kDatasetFormatVersion = 1;
+inline constexpr std::int64_t kDatasetFormatVersion = 2;
 inline constexpr int kMostLevels = 1000;  // three digits
 
 /// Where a dataset comes from; attributes of the root.
@@ -32,8 +32,30 @@ struct LevelAttributes {
   double step = 0;             ///< sampling step of the patches
   double scale = 0;            ///< true sigma; strictly increasing from level to level
   double mean_edge_length = 0;
-  std::int64_t parts = 0;  ///< connected parts
+  std::int64_t parts = 0;    ///< connected parts
+  double shortest_side = 0;  ///< no edge is shorter; 0: not seen to
+  // What remeshing did between the level before and this one.
+  std::int64_t split = 0;          ///< edges halved
+  std::int64_t collapsed = 0;      ///< edges whose ends became one vertex
+  std::int64_t torn = 0;           ///< necks, handles and strips cut
+  std::int64_t inserted = 0;       ///< vertices made, in halved edges and along cuts
+  std::int64_t removed = 0;        ///< vertices of the level before that are gone
+  std::int64_t dropped_parts = 0;  ///< parts removed, too small to carry a patch
 };
+
+/// The counts among them, by their names as attributes.
+struct LevelCount {
+  const char* name;
+  std::int64_t LevelAttributes::*count;
+};
+inline constexpr std::array<LevelCount, 6> kLevelCounts = {{
+    {"split", &LevelAttributes::split},
+    {"collapsed", &LevelAttributes::collapsed},
+    {"torn", &LevelAttributes::torn},
+    {"inserted", &LevelAttributes::inserted},
+    {"removed", &LevelAttributes::removed},
+    {"dropped_parts", &LevelAttributes::dropped_parts},
+}};
 
 /// Which levels have an array.
 enum class Presence {

@@ -92,6 +92,9 @@ void DatasetWriter::write_level(const LevelAttributes& attributes, const Encoded
   file_.write_attribute(level, "scale", attributes.scale);
   file_.write_attribute(level, "mean_edge_length", attributes.mean_edge_length);
   file_.write_attribute(level, "parts", attributes.parts);
+  file_.write_attribute(level, "shortest_side", attributes.shortest_side);
+  for (const LevelCount& count : kLevelCounts)
+    file_.write_attribute(level, count.name, attributes.*count.count);
 
   write(level, format_of("points"), fields.points, vertices_);
   write(level, format_of("normals"), fields.normals, vertices_);

@@ -4,6 +4,22 @@
 
 namespace semigeo::jobs {
 
+namespace {
+
+const char* name_of(Rescale rescale) {
+  switch (rescale) {
+    case Rescale::size:
+      return "size";
+    case Rescale::edges:
+      return "edges";
+    case Rescale::none:
+      break;
+  }
+  return "none";
+}
+
+}  // namespace
+
 std::string to_json(const SurfaceParameters& parameters) {
   const PreparationOptions& preparation = parameters.preparation;
   const auto tolerance = nlohmann::json(preparation.decimate).dump() +
@@ -20,7 +36,8 @@ std::string to_json(const SurfaceParameters& parameters) {
       {"length_unit", parameters.length_unit},
       {"levels", parameters.levels},
       {"principal", evolution.principal},
-      {"rescale", evolution.rescale ? "edges" : "none"},
+      {"remesh", evolution.remesh},
+      {"rescale", name_of(evolution.rescale)},
       {"schedule", evolution.schedule == Schedule::octaves ? "octaves" : "uniform"},
       {"step", evolution.step_factor},
       {"surface", evolution.curved ? "curved" : "flat"}}

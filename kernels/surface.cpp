@@ -15,11 +15,14 @@ void choose_outgoing(Surface& surface) {
     }
 }
 
+}  // namespace
+
 void number_parts(Surface& surface) {
-  surface.part.assign(surface.points.size(), kNone);
+  const auto vertex_count = static_cast<std::int32_t>(surface.outgoing.size());
+  surface.part.assign(vertex_count, kNone);
   surface.part_count = 0;
   std::vector<std::int32_t> pending;
-  for (std::int32_t seed = 0; seed < surface.vertex_count(); ++seed) {
+  for (std::int32_t seed = 0; seed < vertex_count; ++seed) {
     if (surface.part[seed] != kNone) continue;
     surface.part[seed] = surface.part_count;
     pending.assign(1, seed);
@@ -43,8 +46,6 @@ void number_parts(Surface& surface) {
     ++surface.part_count;
   }
 }
-
-}  // namespace
 
 void connect(Surface& surface) {
   choose_outgoing(surface);

@@ -56,6 +56,9 @@ struct Surface {
 /// Linear cost.
 void connect(Surface& surface);
 
+/// Fills `part` and `part_count` anew from the rest. Linear cost.
+void number_parts(Surface& surface);
+
 /// Mean length of all edges, each counted once, in the units of the points; 0 without faces.
 double mean_edge_length(const Surface& surface);
 

@@ -40,14 +40,16 @@ std::vector<std::int32_t> locality_order(const Surface& surface) {
   return order;
 }
 
-Surface reordered(const Surface& surface, const std::vector<std::int32_t>& order) {
+Surface reordered(const Surface& surface, const std::vector<std::int32_t>& order,
+                  std::vector<std::int32_t>* face_order) {
   Surface result;
-  result.points.resize(order.size());
-  result.part.resize(order.size());
+  const std::size_t n = order.size();
+  if (!surface.points.empty()) result.points.resize(n);
+  result.part.resize(n);
   result.part_count = surface.part_count;
-  std::vector<std::int32_t> new_vertex(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    result.points[i] = surface.points[order[i]];
+  std::vector<std::int32_t> new_vertex(surface.outgoing.size(), kNone);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!surface.points.empty()) result.points[i] = surface.points[order[i]];
     result.part[i] = surface.part[order[i]];
     new_vertex[order[i]] = static_cast<std::int32_t>(i);
   }
@@ -56,29 +58,36 @@ Surface reordered(const Surface& surface, const std::vector<std::int32_t>& order
   const auto lowest = [&](const std::array<std::int32_t, 3>& t) {
     return std::min({new_vertex[t[0]], new_vertex[t[1]], new_vertex[t[2]]});
   };
-  std::vector<std::int32_t> cursor(order.size() + 1, 0);
-  for (const auto& t : surface.triangles) ++cursor[lowest(t) + 1];
-  for (std::size_t v = 0; v < order.size(); ++v) cursor[v + 1] += cursor[v];
-  std::vector<std::int32_t> new_face(surface.triangles.size());
-  result.triangles.resize(surface.triangles.size());
+  std::vector<std::int32_t> cursor(n + 1, 0);
+  std::size_t face_count = 0;
+  for (const auto& t : surface.triangles) {
+    if (t[0] == kNone) continue;
+    ++cursor[lowest(t) + 1];
+    ++face_count;
+  }
+  for (std::size_t v = 0; v < n; ++v) cursor[v + 1] += cursor[v];
+  std::vector<std::int32_t> new_face(surface.triangles.size(), kNone);
+  result.triangles.resize(face_count);
+  if (face_order != nullptr) face_order->resize(face_count);
   for (std::size_t f = 0; f < surface.triangles.size(); ++f) {
     const auto& t = surface.triangles[f];
+    if (t[0] == kNone) continue;
     new_face[f] = cursor[lowest(t)]++;
     result.triangles[new_face[f]] = {new_vertex[t[0]], new_vertex[t[1]], new_vertex[t[2]]};
+    if (face_order != nullptr) (*face_order)[new_face[f]] = static_cast<std::int32_t>(f);
   }
 
   const auto moved = [&](std::int32_t h) {
     return h == kNone ? kNone : halfedge(new_face[face_of(h)], corner_of(h));
   };
-  result.twin.assign(surface.twin.size(), kNone);
+  result.twin.assign(4 * face_count, kNone);
   for (std::size_t f = 0; f < surface.triangles.size(); ++f)
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < 3 && new_face[f] != kNone; ++i) {
       const std::int32_t h = halfedge(static_cast<std::int32_t>(f), i);
       result.twin[moved(h)] = moved(surface.twin[h]);
     }
-  result.outgoing.resize(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i)
-    result.outgoing[i] = moved(surface.outgoing[order[i]]);
+  result.outgoing.resize(n);
+  for (std::size_t i = 0; i < n; ++i) result.outgoing[i] = moved(surface.outgoing[order[i]]);
   return result;
 }
 

@@ -14,7 +14,10 @@ std::vector<std::int32_t> locality_order(const Surface& surface);
 
 /// The same surface with vertex i = old vertex order[i]; faces are sorted by their lowest new
 /// vertex, so every part is also one range of faces. Connectivity follows; parts keep their numbers
-/// when the order is one of `locality_order`.
-Surface reordered(const Surface& surface, const std::vector<std::int32_t>& order);
+/// when the order is one of `locality_order`. Gaps are closed: vertices without faces may be left
+/// out, faces whose corners are kNone are. Without points the result has none. `face_order` takes
+/// the old index of each face.
+Surface reordered(const Surface& surface, const std::vector<std::int32_t>& order,
+                  std::vector<std::int32_t>* face_order = nullptr);
 
 }  // namespace semigeo::kernels

@@ -30,7 +30,8 @@ struct RunOptions {
   std::string coordinates = "semigeodesic";
   std::string schedule = "uniform";
   std::string decimate;
-  std::string rescale = "edges";
+  std::string rescale = "size";
+  bool no_remesh = false;
   std::string compression = "deflate";
   bool json = false;
   bool dry_run = false;
@@ -299,13 +300,15 @@ std::string config_text(const RunOptions& options) {
                 "# Effective configuration; use it again with --config.\n"
                 "[run]\nfill-holes = %lld\ndecimate = \"%s\"\ntarget-vertices = %lld\nlevels = "
                 "%d\nsurface = \"%s\"\ncoordinates = \"%s\"\nschedule = \"%s\"\nrescale = \"%s\"\n"
+                "no-remesh = %s\n"
                 "principal = %s\nstep = %.17g\ncompression = \"%s\"\n"
                 "unit = \"%s\"\n",
                 static_cast<long long>(p.preparation.fill_holes), options.decimate.c_str(),
                 static_cast<long long>(p.preparation.target_vertices), p.levels,
                 options.surface.c_str(), options.coordinates.c_str(), options.schedule.c_str(),
-                options.rescale.c_str(), p.evolution.principal ? "true" : "false",
-                p.evolution.step_factor, options.compression.c_str(), p.length_unit.c_str());
+                options.rescale.c_str(), options.no_remesh ? "true" : "false",
+                p.evolution.principal ? "true" : "false", p.evolution.step_factor,
+                options.compression.c_str(), p.length_unit.c_str());
   return text;
 }
 
@@ -347,10 +350,13 @@ void add_evolution_options(CLI::App* command, RunOptions& options) {
   command
       ->add_option(
           "--rescale", options.rescale,
-          "After each uniform smoothing, give each part its mean edge length back, as the\n"
-          "thesis does, or leave it as small as it has become. Noisy scans have too long\n"
-          "edges and grow by it")
-      ->check(CLI::IsMember({"edges", "none"}));
+          "What each part gets back after a uniform smoothing: its size (radius of gyration),\n"
+          "its mean edge length, as in the thesis, or nothing. Noise makes edges longer: noisy\n"
+          "scans swell by the second")
+      ->check(CLI::IsMember({"size", "edges", "none"}));
+  command->add_flag("--no-remesh", options.no_remesh,
+                    "Keep the connectivity of level 0: no odd triangles removed, no necks torn,\n"
+                    "no small parts dropped");
   command->add_flag("--principal", surface.evolution.principal,
                     "Store principal curvatures and their directions as well");
   command
@@ -379,7 +385,10 @@ void apply_words(RunOptions& options) {
   SurfaceParameters& parameters = options.config.surface;
   set_tolerance(options.decimate, parameters);
   parameters.evolution.curved = options.surface == "curved";
-  parameters.evolution.rescale = options.rescale == "edges";
+  parameters.evolution.rescale = options.rescale == "size"    ? Rescale::size
+                                 : options.rescale == "edges" ? Rescale::edges
+                                                              : Rescale::none;
+  parameters.evolution.remesh = !options.no_remesh;
   if (options.coordinates == "polar")
     parameters.evolution.coordinates = kernels::Coordinates::polar;
   if (options.schedule == "octaves") {

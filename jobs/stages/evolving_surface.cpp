@@ -2,9 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
+#include "jobs/stages/remesh_surface.hpp"
 #include "kernels/evolution.hpp"
 
 namespace semigeo::jobs {
@@ -22,64 +25,74 @@ constexpr double kMaxRestoration = 8;
 /// each other, and after two have settled.
 constexpr int kRimPasses = 2;
 
+/// Any number of threads may say so; a look first keeps the cache line shared.
+void note_patch(std::uint8_t& has_patch) {
+  std::atomic_ref flag(has_patch);
+  if (flag.load(std::memory_order_relaxed) == 0) flag.store(1, std::memory_order_relaxed);
+}
+
+/// Rows of a level: vertices by the vertex of level 0 that they come from, then the others.
+std::vector<std::int32_t> order_by_source(const std::vector<std::int32_t>& source) {
+  std::int32_t rows = 0;
+  for (const std::int32_t s : source) rows = std::max(rows, s + 1);
+  std::vector<std::int32_t> begin(rows + 2, 0);
+  const auto bucket = [rows](std::int32_t s) { return s == kernels::kNone ? rows : s; };
+  for (const std::int32_t s : source) ++begin[bucket(s) + 1];
+  for (std::int32_t k = 0; k <= rows; ++k) begin[k + 1] += begin[k];
+  std::vector<std::int32_t> order(source.size());
+  for (std::size_t v = 0; v < source.size(); ++v)
+    order[begin[bucket(source[v])]++] = static_cast<std::int32_t>(v);
+  return order;
+}
+
 }  // namespace
 
-/// Sums over (some of) the faces of a part.
-struct EvolvingSurface::PartMeasure {
-  double edge_length = 0;
-  double edges = 0;
-  double area = 0;                                   ///< twice
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< twice the area times three centroids
-
-  PartMeasure& operator+=(const PartMeasure& other) {
-    edge_length += other.edge_length;
-    edges += other.edges;
-    area += other.area;
-    moment += other.moment;
-    return *this;
-  }
-  double mean_edge_length() const { return edges > 0 ? edge_length / edges : 0; }
-};
-
 EvolvingSurface::EvolvingSurface(kernels::Surface surface, const EvolutionOptions& options,
-                                 const engine::RunContext& context)
-    : context_(context), options_(options), surface_(std::move(surface)) {
-  const double mean = kernels::mean_edge_length(surface_);
+                                 const engine::RunContext& context, Origins origins)
+    : context_(context), options_(options) {
+  const double mean = kernels::mean_edge_length(surface);
   if (mean > 0) unit_ = std::exp2(std::round(std::log2(mean)));
-  mean_edge_length_ = mean / unit_;
+  mean_edge_length_ = first_edge_length_ = mean / unit_;
   first_step_ = options_.step_factor * mean_edge_length_;
   set_step(first_step_);
 
-  points_.resize(surface_.points.size());
-  for (std::size_t v = 0; v < points_.size(); ++v) {
-    const Eigen::Vector3f p = (surface_.points[v].cast<double>() / unit_).cast<float>();
-    points_[v] = {p.x(), p.y(), p.z(), 0};
+  mesh_.points.resize(surface.points.size());
+  for (std::size_t v = 0; v < mesh_.points.size(); ++v) {
+    const Eigen::Vector3f p = (surface.points[v].cast<double>() / unit_).cast<float>();
+    mesh_.points[v] = {p.x(), p.y(), p.z(), 0};
   }
-  std::vector<Eigen::Vector3f>().swap(surface_.points);
-
-  for (std::int32_t f = 0; f < surface_.face_count(); ++f) {
-    const std::int32_t part = surface_.part[surface_.triangles[f][0]];
-    const bool fresh = face_blocks_.empty() || face_blocks_.back().part != part ||
-                       f - face_blocks_.back().begin == kFaceBlock;
-    if (fresh) face_blocks_.push_back({part, f, f});
-    face_blocks_.back().end = f + 1;
+  mesh_.normals.resize(mesh_.points.size());
+  mesh_.source = std::move(origins.vertex);
+  if (mesh_.source.empty()) {
+    mesh_.source.resize(mesh_.points.size());
+    std::iota(mesh_.source.begin(), mesh_.source.end(), 0);
   }
+  mesh_.vertex_filled = std::move(origins.vertex_filled);
+  mesh_.face_filled = std::move(origins.face_filled);
+  mesh_.surface = std::move(surface);
+  std::vector<Eigen::Vector3f>().swap(mesh_.surface.points);
+  target_faces_ = mesh_.surface.face_count();
+  for (const PartMeasure& part : measure_parts(mesh_, context_))
+    part_reference_.push_back(reference_of(part));
 
-  normals_.resize(points_.size());
-  next_points_.resize(points_.size());
-  next_normals_.resize(points_.size());
-  faces_.resize(surface_.triangles.size());
-  if (options_.curved) curved_.resize(surface_.triangles.size());
-  for (const PartMeasure& part : measure_parts())
-    part_edge_length_.push_back(part.mean_edge_length());
-
+  adopt_mesh();
   angle_weighted_normals();
   prepare_faces();
   if (options_.curved) sharpen_normals();
 }
 
+/// Everything that has the size of the mesh.
+void EvolvingSurface::adopt_mesh() {
+  const std::size_t faces = mesh_.surface.triangles.size();
+  next_points_.resize(mesh_.points.size());
+  next_normals_.resize(mesh_.points.size());
+  faces_.resize(faces);
+  if (options_.curved) curved_.resize(faces);
+  stored_order_ = std::make_shared<const std::vector<std::int32_t>>(order_by_source(mesh_.source));
+}
+
 kernels::SampledSurface EvolvingSurface::sampled() const {
-  return {{faces_, surface_.outgoing, points_, normals_, max_crossings_}, curved_};
+  return {{faces_, mesh_.surface.outgoing, mesh_.points, mesh_.normals, max_crossings_}, curved_};
 }
 
 kernels::PatchLayout EvolvingSurface::layout() const {
@@ -98,25 +111,27 @@ void EvolvingSurface::set_step(double step) {
 void EvolvingSurface::angle_weighted_normals() {
   context_.workers.for_blocks(vertex_count(), kFaceBlock, [&](IndexRange range) {
     for (auto v = range.begin; v < range.end; ++v)
-      normals_[v] = kernels::angle_weighted_normal(surface_, points_, static_cast<std::int32_t>(v));
+      mesh_.normals[v] =
+          kernels::angle_weighted_normal(mesh_.surface, mesh_.points, static_cast<std::int32_t>(v));
   });
 }
 
 void EvolvingSurface::prepare_faces() {
-  context_.workers.for_blocks(surface_.face_count(), kFaceBlock, [&](IndexRange range) {
+  context_.workers.for_blocks(mesh_.surface.face_count(), kFaceBlock, [&](IndexRange range) {
     for (auto f = range.begin; f < range.end; ++f)
-      kernels::measure_face(surface_, points_, static_cast<std::int32_t>(f), faces_[f]);
+      kernels::measure_face(mesh_.surface, mesh_.points, static_cast<std::int32_t>(f), faces_[f]);
   });
-  context_.workers.for_blocks(surface_.face_count(), kFaceBlock, [&](IndexRange range) {
+  context_.workers.for_blocks(mesh_.surface.face_count(), kFaceBlock, [&](IndexRange range) {
     for (auto f = range.begin; f < range.end; ++f) {
       kernels::unfold_face(faces_, static_cast<std::int32_t>(f));
       if (!options_.curved) continue;
-      const auto& t = surface_.triangles[f];
+      const auto& t = mesh_.surface.triangles[f];
       for (int i = 0; i < 3; ++i) {
         const std::int32_t p = t[i];
         const std::int32_t q = t[i == 2 ? 0 : i + 1];
-        curved_[f].bulge[i] = kernels::edge_bulge(points_[p].head<3>(), points_[q].head<3>(),
-                                                  normals_[p], normals_[q]);
+        curved_[f].bulge[i] =
+            kernels::edge_bulge(mesh_.points[p].head<3>(), mesh_.points[q].head<3>(),
+                                mesh_.normals[p], mesh_.normals[q]);
       }
     }
   });
@@ -154,7 +169,7 @@ void EvolvingSurface::sharpen(std::int64_t count, const VertexAt& vertex_at,
   context_.workers.for_blocks(count, kFaceBlock, [&](IndexRange range) {
     for (auto i = range.begin; i < range.end; ++i) {
       const std::int32_t v = vertex_at(i);
-      normals_[v] = next_normals_[v];
+      mesh_.normals[v] = next_normals_[v];
     }
   });
   prepare_faces();
@@ -164,7 +179,7 @@ LevelFields EvolvingSurface::advance(bool move) {
   const std::int64_t n = vertex_count();
   LevelFields fields;
   fields.points.resize(n);
-  fields.normals = normals_;
+  fields.normals = mesh_.normals;
   fields.gaussian_curvature.resize(n);
   fields.mean_curvature.resize(n);
   fields.patch_completeness.resize(n);
@@ -177,6 +192,12 @@ LevelFields EvolvingSurface::advance(bool move) {
   fields.step = step_ * unit_;
   fields.scale = std::sqrt(variance_ + step_ * step_) * unit_;
   fields.mean_edge_length = mean_edge_length_ * unit_;
+  fields.parts = mesh_.surface.part_count;
+  fields.remeshed = remeshed_;
+  fields.shortest_side = shortest_side_ * unit_;
+  fields.stored_order = stored_order_;
+  fields.connectivity = std::exchange(connectivity_, std::nullopt);
+  part_has_patch_.assign(mesh_.surface.part_count, 0);
 
   const kernels::SampledSurface surface = sampled();
   const kernels::PatchLayout patch = layout();
@@ -185,7 +206,7 @@ LevelFields EvolvingSurface::advance(bool move) {
     for (auto v = range.begin; v < range.end; ++v) {
       const kernels::EvolvedVertex e =
           kernels::evolve_vertex(surface, static_cast<std::int32_t>(v), patch);
-      fields.points[v] = points_[v].head<3>() * static_cast<float>(unit_);
+      fields.points[v] = mesh_.points[v].head<3>() * static_cast<float>(unit_);
       fields.gaussian_curvature[v] = e.gaussian_curvature * per_length * per_length;
       fields.mean_curvature[v] = e.mean_curvature * per_length;
       fields.patch_completeness[v] = e.patch_completeness;
@@ -195,6 +216,7 @@ LevelFields EvolvingSurface::advance(bool move) {
         fields.principal_direction_1[v] = e.principal.first;
         fields.principal_direction_2[v] = e.principal.second;
       }
+      if (e.patch_completeness > 0) note_patch(part_has_patch_[mesh_.surface.part[v]]);
       next_points_[v] << e.position, 0.0f;
       next_normals_[v] = e.smoothed_normal;
     }
@@ -202,72 +224,102 @@ LevelFields EvolvingSurface::advance(bool move) {
   });
   if (!move) return fields;
 
-  points_.swap(next_points_);
-  normals_.swap(next_normals_);
+  mesh_.points.swap(next_points_);
+  mesh_.normals.swap(next_normals_);
   variance_ += kernels::gaussian_filters().variance * step_ * step_;
-  mean_edge_length_ = restore_size();
+  std::vector<PartMeasure> parts = restore_size();
+  if (options_.remesh) parts = remesh(std::move(parts));
+  mean_edge_length_ = jobs::mean_edge_length(parts);
   if (options_.schedule == Schedule::octaves) set_step(std::max(first_step_, std::sqrt(variance_)));
   if (!options_.curved) angle_weighted_normals();
   prepare_faces();
   return fields;
 }
 
-std::vector<EvolvingSurface::PartMeasure> EvolvingSurface::measure_parts() const {
-  std::vector<PartMeasure> blocks(face_blocks_.size());
-  context_.workers.for_blocks(static_cast<std::int64_t>(blocks.size()), 1, [&](IndexRange range) {
-    for (auto b = range.begin; b < range.end; ++b)
-      for (std::int32_t f = face_blocks_[b].begin; f < face_blocks_[b].end; ++f) {
-        const auto& t = surface_.triangles[f];
-        std::array<Eigen::Vector3d, 3> p;
-        for (int i = 0; i < 3; ++i) p[i] = points_[t[i]].head<3>().cast<double>();
-        for (int i = 0; i < 3; ++i) {
-          const std::int32_t h = kernels::halfedge(f, i);
-          if (surface_.twin[h] > h) continue;  // counted from the other side
-          blocks[b].edge_length += (p[i == 2 ? 0 : i + 1] - p[i]).norm();
-          blocks[b].edges += 1;
-        }
-        const Eigen::Vector3d a = p[1] - p[0];
-        const Eigen::Vector3d c = p[2] - p[0];
-        const double area = a.cross(c).norm();
-        blocks[b].area += area;
-        blocks[b].moment += area * (p[0] + p[1] + p[2]);
-      }
-  });
-  std::vector<PartMeasure> parts(surface_.part_count);
-  for (std::size_t b = 0; b < blocks.size(); ++b) parts[face_blocks_[b].part] += blocks[b];
-  return parts;
+double EvolvingSurface::reference_of(const PartMeasure& part) const {
+  return options_.rescale == Rescale::edges ? part.mean_edge_length() : part.radius_of_gyration();
 }
 
-/// Rescales each part about its centroid to its mean edge length of level 0 (thesis 5.1), if
-/// that is wanted. Result: the mean edge length of the whole surface.
-double EvolvingSurface::restore_size() {
+/// Rescales each part about its centroid to what it was (thesis 5.1), if that is wanted. result:
+/// the parts after it.
+std::vector<PartMeasure> EvolvingSurface::restore_size() {
   struct Restoration {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
     double factor = 1;
   };
-  std::vector<Restoration> restorations(surface_.part_count);
-  PartMeasure total;
-  const auto parts = measure_parts();
+  std::vector<PartMeasure> parts = measure_parts(mesh_, context_);
+  if (options_.rescale == Rescale::none || options_.schedule != Schedule::uniform) return parts;
+  std::vector<Restoration> restorations(parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const PartMeasure& part = parts[i];
-    Restoration& r = restorations[i];
-    const bool restorable = part.edge_length > 0 && part.area > 0;
-    if (restorable && options_.rescale && options_.schedule == Schedule::uniform) {
-      r.factor = std::clamp(part_edge_length_[i] / part.mean_edge_length(), 1 / kMaxRestoration,
-                            kMaxRestoration);  // 5.1, scale factor
-      r.centre = part.moment / (3 * part.area);
-    }
-    total.edge_length += part.edge_length * r.factor;
-    total.edges += part.edges;
+    const double left = reference_of(parts[i]);
+    if (!(left > 0 && part_reference_[i] > 0)) continue;
+    restorations[i] = {
+        parts[i].centroid(),
+        std::clamp(part_reference_[i] / left, 1 / kMaxRestoration, kMaxRestoration)};  // 5.1
   }
   context_.workers.for_blocks(vertex_count(), kFaceBlock, [&](IndexRange range) {
     for (auto v = range.begin; v < range.end; ++v) {
-      const Restoration& r = restorations[surface_.part[v]];
-      const Eigen::Vector3d p = points_[v].head<3>().cast<double>();
-      points_[v].head<3>() = (r.centre + r.factor * (p - r.centre)).cast<float>();
+      const Restoration& r = restorations[mesh_.surface.part[v]];
+      const Eigen::Vector3d p = mesh_.points[v].head<3>().cast<double>();
+      mesh_.points[v].head<3>() = (r.centre + r.factor * (p - r.centre)).cast<float>();
     }
   });
-  return total.mean_edge_length();
+  return measure_parts(mesh_, context_);
+}
+
+/// Rids the mesh, already moved, of odd triangles and of parts on which no patch was valid.
+/// result: the parts after it.
+std::vector<PartMeasure> EvolvingSurface::remesh(std::vector<PartMeasure> parts) {
+  std::vector<std::uint8_t> dropped(parts.size());
+  std::size_t largest = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    dropped[i] = part_has_patch_[i] == 0;
+    if (parts[i].twice_area > parts[largest].twice_area) largest = i;
+  }
+  dropped[largest] = 0;
+  RemeshResult result = remesh_surface(mesh_, std::move(parts),
+                                       {.curved = options_.curved,
+                                        .first_edge_length = first_edge_length_,
+                                        .faces = target_faces_,
+                                        .dropped = dropped},
+                                       context_);
+  shortest_side_ = result.shortest_side;
+  remeshed_ = result.counts;
+  if (!result.changed()) return std::move(result.parts);
+  target_faces_ -= result.counts.dropped_faces;
+  part_reference_.clear();
+  for (const PartMeasure& part : result.parts) part_reference_.push_back(reference_of(part));
+  adopt_mesh();
+  connectivity_ = connectivity();
+  return std::move(result.parts);
+}
+
+LevelConnectivity EvolvingSurface::connectivity() const {
+  const std::vector<std::int32_t>& order = *stored_order_;
+  const std::size_t n = order.size();
+  LevelConnectivity result;
+  result.source_vertex.resize(n);
+  result.part.resize(n);
+  if (!mesh_.vertex_filled.empty()) result.vertex_filled.resize(n);
+  result.face_filled = mesh_.face_filled;
+  std::vector<std::int32_t> row(n);
+  std::vector<std::int32_t> part_number(mesh_.surface.part_count, kernels::kNone);
+  std::int32_t parts = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::int32_t v = order[i];
+    row[v] = static_cast<std::int32_t>(i);
+    std::int32_t& part = part_number[mesh_.surface.part[v]];
+    if (part == kernels::kNone) part = parts++;
+    result.part[i] = part;
+    result.source_vertex[i] = mesh_.source[v];
+    if (!mesh_.vertex_filled.empty()) result.vertex_filled[i] = mesh_.vertex_filled[v];
+  }
+  result.triangles.resize(mesh_.surface.triangles.size());
+  context_.workers.for_blocks(mesh_.surface.face_count(), kFaceBlock, [&](IndexRange range) {
+    for (auto f = range.begin; f < range.end; ++f)
+      for (int i = 0; i < 3; ++i) result.triangles[f][i] = row[mesh_.surface.triangles[f][i]];
+  });
+  return result;
 }
 
 }  // namespace semigeo::jobs

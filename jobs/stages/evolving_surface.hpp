@@ -3,13 +3,27 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/run_context.hpp"
+#include "jobs/stages/part_measures.hpp"
 #include "kernels/evolution.hpp"
+#include "kernels/remeshing.hpp"
 #include "kernels/surface.hpp"
 
 namespace semigeo::jobs {
+
+/// Connectivity and lineage of a level, in the order of its rows: descendants of level 0 as there,
+/// then what was inserted.
+struct LevelConnectivity {
+  std::vector<std::array<std::int32_t, 3>> triangles;
+  std::vector<std::int32_t> source_vertex;  ///< (N) vertex of level 0, -1 = inserted
+  std::vector<std::int32_t> part;           ///< (N) numbered by first vertex
+  std::vector<std::uint8_t> vertex_filled;  ///< (N) if level 0 has such marks
+  std::vector<std::uint8_t> face_filled;    ///< (F)
+};
 
 /// The fields of one scale level, in the scan's length unit and in the surface's vertex order.
 struct LevelFields {
@@ -26,6 +40,13 @@ struct LevelFields {
   double step = 0;   ///< sample distance of the patches
   double scale = 0;  ///< sigma of the fields: sqrt(variance of the smoothing so far + step^2)
   double mean_edge_length = 0;
+
+  std::int64_t parts = 0;
+  kernels::RemeshCounts remeshed;  ///< what was done to the mesh of the level before
+  double shortest_side = 0;        ///< no edge is shorter; 0: nobody saw to that
+  /// Row i of the level is vertex (*stored_order)[i].
+  std::shared_ptr<const std::vector<std::int32_t>> stored_order;
+  std::optional<LevelConnectivity> connectivity;  ///< if it is not that of the level before
 };
 
 /// How the sampling step grows from level to level.
@@ -34,13 +55,28 @@ enum class Schedule {
   octaves   ///< with the scale reached: two levels double it; parts are never rescaled
 };
 
+/// What each part gets back after a smoothing (5.1).
+enum class Rescale {
+  size,   ///< its radius of gyration
+  edges,  ///< its mean edge length, as in the thesis
+  none    ///< nothing
+};
+
 struct EvolutionOptions {
   bool curved = true;  ///< sample quadratic faces; else flat ones, as the thesis does
   kernels::Coordinates coordinates = kernels::Coordinates::semigeodesic;
   Schedule schedule = Schedule::uniform;
-  bool rescale = true;     ///< under `uniform` give parts their mean edge length back (5.1)
+  Rescale rescale = Rescale::size;  ///< under `uniform`
+  bool remesh = true;      ///< rid every level after 0 of odd triangles and lost parts (5.5)
   bool principal = false;  ///< principal curvatures as well
   double step_factor = 1;  ///< sample distance of level 0 in its mean edge lengths
+};
+
+/// What vertices and faces bring along from before level 0.
+struct Origins {
+  std::vector<std::int32_t> vertex;         ///< (N) row of level 0, a permutation; empty: its own
+  std::vector<std::uint8_t> vertex_filled;  ///< (N) 1 = made by filling a hole; empty: no marks
+  std::vector<std::uint8_t> face_filled;    ///< (F)
 };
 
 /// Evolves a surface level by level on all workers: kernels for one vertex go in, ranges of
@@ -51,25 +87,19 @@ struct EvolutionOptions {
 class EvolvingSurface {
  public:
   EvolvingSurface(kernels::Surface surface, const EvolutionOptions& options,
-                  const engine::RunContext& context);
+                  const engine::RunContext& context, Origins origins = {});
 
   /// Curvature of the current level; if `move`, the surface is then smoothed by the same patches,
-  /// if so wanted each part is rescaled about its centroid to its first mean edge
-  /// length, and becomes the next level. Results do not depend on the number of threads. Source:
-  /// thesis 5.1, 5.3 - 5.6.
+  /// if so wanted each part is rescaled about its centroid and the mesh rid of odd triangles and of
+  /// parts on which no patch was valid - but for the largest part -, and becomes the next level.
+  /// Results do not depend on the number of threads. Source: thesis 5.1, 5.3 - 5.6.
   LevelFields advance(bool move);
 
-  std::int64_t vertex_count() const { return static_cast<std::int64_t>(points_.size()); }
+  std::int64_t vertex_count() const { return mesh_.vertex_count(); }
+  /// Nothing is left: all of it has collapsed.
+  bool vanished() const { return vertex_count() == 0; }
 
  private:
-  struct PartMeasure;
-  /// Faces of one part that one task measures.
-  struct FaceBlock {
-    std::int32_t part;
-    std::int32_t begin;
-    std::int32_t end;
-  };
-
   kernels::SampledSurface sampled() const;
   kernels::PatchLayout layout() const;
   void set_step(double step);
@@ -78,24 +108,32 @@ class EvolvingSurface {
   void sharpen_normals();
   template <typename VertexAt>
   void sharpen(std::int64_t count, const VertexAt& vertex_at, std::vector<std::uint8_t>& truncated);
-  std::vector<PartMeasure> measure_parts() const;
-  double restore_size();
+  double reference_of(const PartMeasure& part) const;
+  std::vector<PartMeasure> restore_size();
+  std::vector<PartMeasure> remesh(std::vector<PartMeasure> parts);
+  void adopt_mesh();
+  LevelConnectivity connectivity() const;
 
   engine::RunContext context_;
   EvolutionOptions options_;
-  kernels::Surface surface_;  ///< connectivity; its points are dropped
-  std::vector<FaceBlock> face_blocks_;
-  std::vector<double> part_edge_length_;  ///< of level 0
-  double unit_ = 1;                       ///< scan units per internal unit
-  double mean_edge_length_ = 0;           ///< internal units
-  double step_ = 0;                       ///< sample distance of this level, internal units
-  double first_step_ = 0;                 ///< of level 0
+  kernels::LevelMesh mesh_;                   ///< internal units
+  std::int64_t target_faces_ = 0;             ///< what refining keeps up
+  std::vector<double> part_reference_;        ///< what rescaling gives back, internal units
+  std::vector<std::uint8_t> part_has_patch_;  ///< at the current level
+  double unit_ = 1;                           ///< scan units per internal unit
+  double mean_edge_length_ = 0;               ///< internal units
+  double first_edge_length_ = 0;              ///< of level 0
+  double step_ = 0;                           ///< sample distance of this level, internal units
+  double first_step_ = 0;                     ///< of level 0
   int max_crossings_ = kernels::kMaxCrossings;
   double variance_ = 0;  ///< of the smoothing so far, internal units^2
 
-  std::vector<Eigen::Vector4f> points_;
+  kernels::RemeshCounts remeshed_;  ///< on the way to the current level
+  double shortest_side_ = 0;        ///< internal units
+  std::shared_ptr<const std::vector<std::int32_t>> stored_order_;
+  std::optional<LevelConnectivity> connectivity_;  ///< for the current level's fields
+
   std::vector<Eigen::Vector4f> next_points_;
-  std::vector<Eigen::Vector3f> normals_;
   std::vector<Eigen::Vector3f> next_normals_;
   std::vector<kernels::GeodesicFace> faces_;
   std::vector<kernels::QuadraticFace> curved_;

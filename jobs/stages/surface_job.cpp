@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -46,6 +47,13 @@ void check_usable(const kernels::Surface& surface, const SurfaceJob& job,
         "export the scan in a unit that suits its size");
 }
 
+std::vector<std::uint8_t> gathered(const std::vector<std::uint8_t>& values,
+                                   const std::vector<std::int32_t>& order) {
+  std::vector<std::uint8_t> result(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) result[i] = values[order[i]];
+  return result;
+}
+
 /// Encodes arrays chunk by chunk on all workers.
 class ParallelEncoder {
  public:
@@ -80,22 +88,33 @@ class ParallelEncoder {
   std::vector<Task> tasks_;
 };
 
-io::EncodedConnectivity encode_connectivity(const PreparedSurface& prepared,
+io::EncodedConnectivity encode_connectivity(const LevelConnectivity& connectivity, bool filled,
                                             ParallelEncoder& encoder) {
-  const kernels::Surface& surface = prepared.surface;
-  std::vector<std::int32_t> source(surface.points.size());
-  std::iota(source.begin(), source.end(), 0);
   io::EncodedConnectivity encoded;
-  encoder.add(io::array_of(std::span(surface.triangles)), encoded.triangles);
-  encoder.add(io::array_of(std::span<const std::int32_t>(source), io::ElementType::int64),
+  encoder.add(io::array_of(std::span(connectivity.triangles)), encoded.triangles);
+  encoder.add(io::array_of(std::span<const std::int32_t>(connectivity.source_vertex),
+                           io::ElementType::int64),
               encoded.source_vertex);
-  encoder.add(io::array_of(std::span<const std::int32_t>(surface.part)), encoded.part);
-  if (!prepared.face_filled.empty()) {
-    encoder.add(io::array_of(std::span(prepared.vertex_filled)), encoded.vertex_filled.emplace());
-    encoder.add(io::array_of(std::span(prepared.face_filled)), encoded.face_filled.emplace());
+  encoder.add(io::array_of(std::span<const std::int32_t>(connectivity.part)), encoded.part);
+  if (filled) {
+    encoder.add(io::array_of(std::span(connectivity.vertex_filled)),
+                encoded.vertex_filled.emplace());
+    encoder.add(io::array_of(std::span(connectivity.face_filled)), encoded.face_filled.emplace());
   }
   encoder.run();
   return encoded;
+}
+
+/// Of level 0: the scan's own order of vertices and faces.
+LevelConnectivity first_connectivity(const PreparedSurface& prepared) {
+  LevelConnectivity first{
+      .triangles = prepared.surface.triangles,
+      .source_vertex = std::vector<std::int32_t>(prepared.surface.points.size()),
+      .part = prepared.surface.part,
+      .vertex_filled = prepared.vertex_filled,
+      .face_filled = prepared.face_filled};
+  std::iota(first.source_vertex.begin(), first.source_vertex.end(), 0);
+  return first;
 }
 
 io::EncodedFields encode_fields(const LevelFields& fields, io::RowOrder order,
@@ -123,26 +142,46 @@ io::EncodedFields encode_fields(const LevelFields& fields, io::RowOrder order,
   return encoded;
 }
 
-/// result[old] = new for order[new] = old.
-std::vector<std::int32_t> inverse(const std::vector<std::int32_t>& order) {
-  std::vector<std::int32_t> result(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) result[order[i]] = static_cast<std::int32_t>(i);
-  return result;
+io::LevelAttributes attributes_of(const LevelFields& fields, int iteration) {
+  return {.iteration = iteration,
+          .step = fields.step,
+          .scale = fields.scale,
+          .mean_edge_length = fields.mean_edge_length,
+          .parts = fields.parts,
+          .shortest_side = fields.shortest_side,
+          .split = fields.remeshed.split,
+          .collapsed = fields.remeshed.collapsed,
+          .torn = fields.remeshed.torn,
+          .inserted = fields.remeshed.inserted,
+          .removed = fields.remeshed.removed,
+          .dropped_parts = fields.remeshed.dropped_parts};
 }
+
+/// What a run tells of all levels together.
+struct LevelsWritten {
+  std::int64_t levels = 0;
+  kernels::RemeshCounts remeshed;
+};
 
 /// Evolves and writes all levels: pass k + 1 runs beside encoding and writing of level k.
 ///
 ///   pass 0 ──► pass 1 ──► pass 2 ──► ...
 ///     └► encode 0 ─► write 0 ─► (pass 2)      at most two levels of fields are in memory
 ///          └► encode 1 ─► write 1 ─► ...
-void write_levels(EvolvingSurface& surface, const std::vector<std::int32_t>& stored_order,
-                  const SurfaceParameters& parameters, std::int64_t parts,
-                  io::DatasetWriter& writer, const engine::RunContext& context) {
+///
+/// Ends early if the surface vanishes.
+LevelsWritten write_levels(EvolvingSurface& surface, const SurfaceParameters& parameters,
+                           bool filled, io::DatasetWriter& writer,
+                           const engine::RunContext& context) {
   struct Level {
     std::unique_ptr<LevelFields> fields;
-    io::EncodedFields encoded;
+    bool exists = false;
+    kernels::RemeshCounts remeshed;
     io::LevelAttributes attributes;
+    std::optional<io::EncodedConnectivity> connectivity;
+    io::EncodedFields encoded;
   };
+  LevelsWritten written;
   std::vector<Level> levels(parameters.levels + 1);
   const auto cost = static_cast<double>(surface.vertex_count());
   engine::TaskGraph graph;
@@ -156,19 +195,22 @@ void write_levels(EvolvingSurface& surface, const std::vector<std::int32_t>& sto
     pass.push_back(graph.add(
         "pass " + name, after,
         [&surface, &level, last = k == parameters.levels] {
+          if (surface.vanished()) return;
+          level.exists = true;
           level.fields = std::make_unique<LevelFields>(surface.advance(!last));
         },
         cost));
     const auto encode = graph.add(
         "encode " + name, {pass[k]},
-        [&context, &parameters, &stored_order, &level, k, parts] {
+        [&context, &parameters, &level, k, filled] {
+          if (!level.exists) return;
+          const LevelFields& fields = *level.fields;
           ParallelEncoder encoder(context.workers, parameters.compression);
-          level.encoded = encode_fields(*level.fields, stored_order, encoder);
-          level.attributes = {.iteration = k,
-                              .step = level.fields->step,
-                              .scale = level.fields->scale,
-                              .mean_edge_length = level.fields->mean_edge_length,
-                              .parts = parts};
+          if (fields.connectivity)
+            level.connectivity = encode_connectivity(*fields.connectivity, filled, encoder);
+          level.encoded = encode_fields(fields, *fields.stored_order, encoder);
+          level.attributes = attributes_of(fields, k);
+          level.remeshed = fields.remeshed;
           level.fields.reset();
         },
         cost / 10);
@@ -176,13 +218,19 @@ void write_levels(EvolvingSurface& surface, const std::vector<std::int32_t>& sto
     if (k >= 1) after.push_back(write[k - 1]);
     write.push_back(graph.add(
         "write " + name, after,
-        [&writer, &level] {
+        [&writer, &level, &written] {
+          if (!level.exists) return;
+          if (level.connectivity) writer.write_connectivity(*level.connectivity);
           writer.write_level(level.attributes, level.encoded);
+          ++written.levels;
+          written.remeshed += level.remeshed;
+          level.connectivity.reset();
           level.encoded = {};
         },
         cost / 20));
   }
   rethrow_first(graph.run(context));
+  return written;
 }
 
 }  // namespace
@@ -202,7 +250,7 @@ SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters&
   header.job_key = job.key;
 
   std::unique_ptr<io::DatasetWriter> writer;
-  std::vector<std::int32_t> stored_order;
+  Origins origins;
   kernels::Surface surface;
   {
     io::Scan scan = io::read_scan(job.input);
@@ -219,7 +267,6 @@ SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters&
     result.vertices = prepared.surface.vertex_count();
     result.triangles = prepared.surface.face_count();
     result.parts = prepared.surface.part_count;
-    result.levels = parameters.levels + 1;
     nlohmann::json repairs = repairs_json(built.repairs);
     repairs["polygons_triangulated"] = scan.polygons_triangulated;
     repairs["faces_skipped"] = scan.faces_skipped;
@@ -229,13 +276,21 @@ SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters&
 
     writer = std::make_unique<io::DatasetWriter>(job.output, header, parameters.compression);
     ParallelEncoder encoder(context.workers, parameters.compression);
-    writer->write_connectivity(encode_connectivity(prepared, encoder));
-    const auto order = kernels::locality_order(prepared.surface);
-    surface = kernels::reordered(prepared.surface, order);
-    stored_order = inverse(order);
+    const bool filled = !prepared.face_filled.empty();
+    writer->write_connectivity(encode_connectivity(first_connectivity(prepared), filled, encoder));
+    origins.vertex = kernels::locality_order(prepared.surface);
+    std::vector<std::int32_t> faces;
+    surface = kernels::reordered(prepared.surface, origins.vertex, &faces);
+    if (filled) {
+      origins.vertex_filled = gathered(prepared.vertex_filled, origins.vertex);
+      origins.face_filled = gathered(prepared.face_filled, faces);
+    }
   }
-  EvolvingSurface evolving(std::move(surface), parameters.evolution, context);
-  write_levels(evolving, stored_order, parameters, result.parts, *writer, context);
+  const bool filled = !origins.face_filled.empty();
+  EvolvingSurface evolving(std::move(surface), parameters.evolution, context, std::move(origins));
+  const LevelsWritten written = write_levels(evolving, parameters, filled, *writer, context);
+  result.levels = written.levels;
+  result.remeshed = written.remeshed;
   writer->finish();
   return result;
 }

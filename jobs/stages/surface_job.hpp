@@ -7,6 +7,7 @@
 #include "jobs/config.hpp"
 #include "jobs/plan.hpp"
 #include "jobs/stages/prepare_surface.hpp"
+#include "kernels/remeshing.hpp"
 #include "kernels/surface_builder.hpp"
 
 namespace semigeo::jobs {
@@ -17,9 +18,10 @@ struct SurfaceJobResult {
   std::int64_t vertices = 0;
   std::int64_t triangles = 0;
   std::int32_t parts = 0;
-  std::int64_t levels = 0;
+  std::int64_t levels = 0;  ///< written; fewer than asked for if the surface vanished
   kernels::SurfaceRepairs repairs;
   PreparationResult preparation;
+  kernels::RemeshCounts remeshed;  ///< of all levels together
 };
 
 /// Repairs as JSON with sorted keys.

@@ -1,0 +1,88 @@
+#include "jobs/stages/part_measures.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace semigeo::jobs {
+namespace {
+
+constexpr std::int64_t kFaceBlock = 8192;
+
+/// Faces one after the other that belong to one part.
+struct Stretch {
+  std::int32_t part;
+  PartMeasure measure;
+};
+
+void add_face(const kernels::LevelMesh& mesh, std::int32_t f, PartMeasure& sum) {
+  const kernels::Surface& surface = mesh.surface;
+  const auto& t = surface.triangles[f];
+  const std::array<Eigen::Vector3d, 3> p = {mesh.point(t[0]), mesh.point(t[1]), mesh.point(t[2])};
+  for (int i = 0; i < 3; ++i) {
+    const std::int32_t h = kernels::halfedge(f, i);
+    if (surface.twin[h] > h) continue;  // counted from the other side
+    sum.edge_length += (p[i == 2 ? 0 : i + 1] - p[i]).norm();
+    sum.edges += 1;
+  }
+  const double twice_area = (p[1] - p[0]).cross(p[2] - p[0]).norm();
+  const Eigen::Vector3d corners = p[0] + p[1] + p[2];
+  sum.twice_area += twice_area;
+  sum.moment += twice_area * corners;
+  sum.second_moment += twice_area * (p[0].squaredNorm() + p[1].squaredNorm() + p[2].squaredNorm() +
+                                     corners.squaredNorm());
+  ++sum.faces;
+}
+
+}  // namespace
+
+PartMeasure& PartMeasure::operator+=(const PartMeasure& other) {
+  edge_length += other.edge_length;
+  edges += other.edges;
+  twice_area += other.twice_area;
+  moment += other.moment;
+  second_moment += other.second_moment;
+  faces += other.faces;
+  return *this;
+}
+
+Eigen::Vector3d PartMeasure::centroid() const {
+  if (!(twice_area > 0)) return Eigen::Vector3d::Zero();
+  return moment / (3 * twice_area);
+}
+
+double PartMeasure::radius_of_gyration() const {
+  if (!(twice_area > 0)) return 0;
+  return std::sqrt(std::max(0.0, second_moment / (12 * twice_area) - centroid().squaredNorm()));
+}
+
+std::vector<PartMeasure> measure_parts(const kernels::LevelMesh& mesh,
+                                       const engine::RunContext& context) {
+  const kernels::Surface& surface = mesh.surface;
+  const std::int64_t faces = surface.face_count();
+  std::vector<std::vector<Stretch>> blocks((faces + kFaceBlock - 1) / kFaceBlock);
+  const auto block_count = static_cast<std::int64_t>(blocks.size());
+  context.workers.for_blocks(block_count, 1, [&](engine::IndexRange range) {
+    for (auto b = range.begin; b < range.end; ++b) {
+      const auto end = static_cast<std::int32_t>(std::min((b + 1) * kFaceBlock, faces));
+      for (auto f = static_cast<std::int32_t>(b * kFaceBlock); f < end; ++f) {
+        const std::int32_t part = surface.part[surface.triangles[f][0]];
+        if (blocks[b].empty() || blocks[b].back().part != part) blocks[b].push_back({part, {}});
+        add_face(mesh, f, blocks[b].back().measure);
+      }
+    }
+  });
+  std::vector<PartMeasure> parts(surface.part_count);
+  for (const auto& block : blocks)
+    for (const Stretch& stretch : block) parts[stretch.part] += stretch.measure;
+  return parts;
+}
+
+double mean_edge_length(const std::vector<PartMeasure>& parts) {
+  PartMeasure sum;
+  for (const PartMeasure& part : parts) sum += part;
+  return sum.mean_edge_length();
+}
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,81 @@
+#include "jobs/stages/remesh_surface.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace semigeo::jobs {
+namespace {
+
+constexpr std::int64_t kFaceBlock = 8192;
+/// Edges that refining makes are longer than the shortest side by this factor, so that what the
+/// mean edge length does next cannot make them odd.
+constexpr double kMargin = 2;
+
+/// Edges that `find` picks from ranges of faces, in the order of the faces.
+template <typename Find>
+std::vector<std::int32_t> find_edges(const kernels::LevelMesh& mesh,
+                                     const engine::RunContext& context, const Find& find) {
+  const std::int64_t faces = mesh.surface.face_count();
+  std::vector<std::vector<std::int32_t>> blocks((faces + kFaceBlock - 1) / kFaceBlock);
+  const auto block_count = static_cast<std::int64_t>(blocks.size());
+  context.workers.for_blocks(block_count, 1, [&](engine::IndexRange range) {
+    for (auto b = range.begin; b < range.end; ++b)
+      find(static_cast<std::int32_t>(b * kFaceBlock),
+           static_cast<std::int32_t>(std::min((b + 1) * kFaceBlock, faces)), blocks[b]);
+  });
+  std::vector<std::int32_t> edges;
+  for (const auto& block : blocks) edges.insert(edges.end(), block.begin(), block.end());
+  return edges;
+}
+
+/// One face of each part that is to be dropped.
+std::vector<std::int32_t> faces_of_dropped(const kernels::Surface& surface,
+                                           std::span<const std::uint8_t> dropped) {
+  std::vector<std::int32_t> faces;
+  if (std::ranges::find(dropped, 1) == dropped.end()) return faces;
+  std::int32_t last = kernels::kNone;
+  for (std::int32_t f = 0; f < surface.face_count(); ++f) {
+    const std::int32_t part = surface.part[surface.triangles[f][0]];
+    if (part != last && dropped[part] != 0) faces.push_back(f);
+    last = part;
+  }
+  return faces;
+}
+
+}  // namespace
+
+RemeshResult remesh_surface(kernels::LevelMesh& mesh, std::vector<PartMeasure> parts,
+                            const RemeshOptions& options, const engine::RunContext& context) {
+  RemeshResult result;
+  std::vector<std::int32_t> dropped = faces_of_dropped(mesh.surface, options.dropped);
+  bool refined = false;
+  while (true) {
+    const double reference = std::max(options.first_edge_length, mean_edge_length(parts));
+    result.shortest_side = kShortestSide * reference;
+    const auto find_short = [&](std::int32_t begin, std::int32_t end, auto& edges) {
+      kernels::find_short_edges(mesh, begin, end, result.shortest_side, edges);
+    };
+    const auto edges = find_edges(mesh, context, find_short);
+    if (edges.empty() && dropped.empty() && (refined || mesh.surface.face_count() >= options.faces))
+      break;
+    kernels::Remesher remesher(mesh, options.curved);
+    for (const std::int32_t face : std::exchange(dropped, {})) remesher.drop_part(face);
+    remesher.collapse(edges, result.shortest_side);
+    // Once: edges that become odd because the mean edge length has grown must not come back.
+    const std::int64_t target = options.faces - remesher.counts().dropped_faces;
+    if (!std::exchange(refined, true) && remesher.face_count() < target) {
+      const auto find_long = [&](std::int32_t begin, std::int32_t end, auto& found) {
+        kernels::find_long_edges(mesh, begin, end, reference, found);
+      };
+      remesher.refine(find_edges(mesh, context, find_long), target, reference,
+                      kMargin * result.shortest_side);
+    }
+    result.counts += remesher.finish();
+    parts = measure_parts(mesh, context);
+  }
+  result.parts = std::move(parts);
+  return result;
+}
+
+}  // namespace semigeo::jobs

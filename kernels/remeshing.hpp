@@ -1,0 +1,119 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kernels/surface.hpp"
+#include "kernels/surface_editor.hpp"
+
+namespace semigeo::kernels {
+
+/// A surface on its way through the levels, with all that its vertices carry along.
+struct LevelMesh {
+  Surface surface;                          ///< connectivity; without points
+  std::vector<Eigen::Vector4f> points;      ///< (N) fourth component 0
+  std::vector<Eigen::Vector3f> normals;     ///< (N) unit, or zero
+  std::vector<std::int32_t> source;         ///< (N) vertex of level 0, or kNone: inserted
+  std::vector<std::uint8_t> vertex_filled;  ///< (N) 1 = made by filling a hole; or empty
+  std::vector<std::uint8_t> face_filled;    ///< (F)
+
+  std::int64_t vertex_count() const { return static_cast<std::int64_t>(points.size()); }
+  Eigen::Vector3d point(std::int32_t v) const { return points[v].head<3>().cast<double>(); }
+  double length2(std::int32_t h) const {
+    return (point(surface.target(h)) - point(surface.origin(h))).squaredNorm();
+  }
+};
+
+/// What remeshing did.
+struct RemeshCounts {
+  std::int64_t collapsed = 0;  ///< edges whose ends became one vertex
+  std::int64_t split = 0;      ///< edges halved by a new vertex
+  std::int64_t torn = 0;       ///< necks, handles and strips cut
+  std::int64_t inserted = 0;   ///< vertices that are new: in halved edges, along cuts
+  std::int64_t removed = 0;    ///< vertices that are gone: collapsed, or dropped with a part
+  std::int64_t dropped_parts = 0;
+  std::int64_t dropped_faces = 0;
+
+  bool operator==(const RemeshCounts&) const = default;
+  RemeshCounts& operator+=(const RemeshCounts& other);
+};
+
+/// Appends those edges of faces [begin, end) that are shorter than `length`, each once, as
+/// half-edges.
+void find_short_edges(const LevelMesh& mesh, std::int32_t begin, std::int32_t end, double length,
+                      std::vector<std::int32_t>& edges);
+/// Likewise, those that are longer.
+void find_long_edges(const LevelMesh& mesh, std::int32_t begin, std::int32_t end, double length,
+                     std::vector<std::int32_t>& edges);
+
+/// Rids a mesh of odd triangles. Serial; the cost is that of the edges given and of a few linear
+/// passes in `finish`. The result depends on the mesh alone, and is a surface with all that
+/// kernels/surface.hpp promises.
+/// Source: thesis 5.5, 6.1.1. Differs: the thesis removes odd triangles by a decimation that is
+/// not described; here their shortest edges are collapsed, and where that would pinch the surface
+/// it is cut and covered.
+class Remesher {
+ public:
+  /// The mesh must outlive the remesher; until `finish` its arrays have gaps. `curved`: new
+  /// vertices lie on the curved surface over their edge, else on the edge.
+  Remesher(LevelMesh& mesh, bool curved);
+
+  /// Removes the part of a face.
+  void drop_part(std::int32_t face);
+
+  /// Collapses edges shorter than `shortest`, the shortest first, until none is left. Where the
+  /// edge closes a neck or a handle (three edges that bound no face), that is cut through and both
+  /// ends are covered; a strip is cut; a triangle or a tetrahedron is dropped. `edges` must name
+  /// all edges that are too short.
+  void collapse(std::span<const std::int32_t> edges, double shortest);
+
+  /// Halves edges longer than `longest`, the longest first, until there are `faces` faces or
+  /// no such edge is left. No new edge becomes shorter than `shortest`.
+  void refine(std::span<const std::int32_t> edges, std::int64_t faces, double longest,
+              double shortest);
+
+  std::int64_t face_count() const { return editor_.face_count(); }
+  const RemeshCounts& counts() const { return counts_; }
+
+  /// Closes all gaps. New vertices come next to those they come from, every part is one range
+  /// of vertices and one of faces, and parts are numbered in that order.
+  RemeshCounts finish();
+
+ private:
+  struct Edge {
+    double length2;
+    std::int32_t h;
+    bool operator<(const Edge& other) const {
+      return length2 != other.length2 ? length2 < other.length2 : h < other.h;
+    }
+    bool operator>(const Edge& other) const { return other < *this; }
+  };
+
+  bool current(const Edge& edge) const;
+  void merge(std::int32_t h, double shortest);
+  void absorb(std::int32_t h);
+  void carry_over(std::int32_t a, std::int32_t b);
+  std::int32_t spoke_inside(std::int32_t h, std::int32_t third) const;
+  Eigen::Vector3d merged_point(std::int32_t a, std::int32_t b) const;
+  double least_cosine(std::int32_t v, std::int32_t other, const Eigen::Vector3d& p) const;
+  void push_short(std::int32_t h, double shortest);
+  void push_fan(std::int32_t v, double shortest);
+  Eigen::Vector3f middle(std::int32_t a, std::int32_t b) const;
+  void carry_new_vertices();
+  void mark_face(std::int32_t f, std::uint8_t filled);
+  bool split(std::int32_t h, double shortest);
+  std::vector<std::int32_t> order_of_survivors();
+  void reorder(const std::vector<std::int32_t>& order);
+
+  LevelMesh& mesh_;
+  SurfaceEditor editor_;
+  bool curved_;
+  bool parts_changed_ = false;
+  std::int64_t first_new_;  ///< vertices from here on were made by editing
+  RemeshCounts counts_;
+  std::vector<Edge> heap_;
+};
+
+}  // namespace semigeo::kernels

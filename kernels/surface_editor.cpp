@@ -1,0 +1,274 @@
+#include "kernels/surface_editor.hpp"
+
+#include <algorithm>
+
+namespace semigeo::kernels {
+
+SurfaceEditor::SurfaceEditor(Surface& surface)
+    : surface_(surface),
+      face_count_(surface.face_count()),
+      vertex_count_(static_cast<std::int64_t>(surface.outgoing.size())) {}
+
+/// Whether an edge joins a and b: both fans are walked side by side, until the smaller one ends.
+bool SurfaceEditor::joined(std::int32_t a, std::int32_t b) const {
+  const std::array<std::int32_t, 2> start = {surface_.outgoing[a], surface_.outgoing[b]};
+  std::array<std::int32_t, 2> h = start;
+  while (true)
+    for (int side = 0; side < 2; ++side) {
+      const std::int32_t sought = side == 0 ? b : a;
+      if (surface_.target(h[side]) == sought || surface_.origin(prev(h[side])) == sought)
+        return true;
+      h[side] = surface_.ccw(h[side]);
+      if (h[side] == kNone || h[side] == start[side]) return false;
+    }
+}
+
+/// The half-edge from one vertex to another; if there is none the opposite one, or kNone.
+std::int32_t SurfaceEditor::find(std::int32_t from, std::int32_t to) const {
+  std::int32_t found = kNone;
+  each_corner(from, [&](std::int32_t h) {
+    if (surface_.target(h) == to) found = h;
+    const std::int32_t last = prev(h);
+    if (surface_.twin[last] == kNone && surface_.origin(last) == to) found = last;
+  });
+  return found;
+}
+
+SurfaceEditor::Corners SurfaceEditor::corners_of(std::int32_t v) const {
+  Corners corners;
+  each_corner(v, [&](std::int32_t h) { corners.push_back(h); });
+  return corners;
+}
+
+std::int32_t SurfaceEditor::from_larger_fan(std::int32_t h) const {
+  const std::int32_t t = surface_.twin[h];
+  if (t == kNone) return h;
+  const std::array<std::int32_t, 2> start = {surface_.outgoing[surface_.origin(h)],
+                                             surface_.outgoing[surface_.target(h)]};
+  std::array<std::int32_t, 2> at = start;
+  while (true)
+    for (const int side : {1, 0}) {
+      at[side] = surface_.ccw(at[side]);
+      if (at[side] == kNone || at[side] == start[side]) return side == 1 ? h : t;
+    }
+}
+
+SurfaceEditor::Collapse SurfaceEditor::may_collapse(std::int32_t h) const {
+  const std::int32_t t = surface_.twin[h];
+  const std::int32_t a = surface_.origin(h);
+  const std::int32_t b = surface_.target(h);
+  const std::int32_t c = surface_.origin(prev(h));
+  const std::int32_t d = t == kNone ? kNone : surface_.origin(prev(t));
+  const auto same_face = [this](std::int32_t g, std::int32_t other) {
+    g = surface_.twin[g];
+    other = surface_.twin[other];
+    return g != kNone && other != kNone && face_of(g) == face_of(other);
+  };
+  if (t == kNone) {
+    if (surface_.twin[next(h)] == kNone && surface_.twin[prev(h)] == kNone)
+      return {Obstacle::part, kNone};
+  } else {
+    if (surface_.on_boundary(a) && surface_.on_boundary(b)) return {Obstacle::chord, kNone};
+    // Faces (b, c, d) and (a, c, d) besides (a, b, c) and (b, a, d): a tetrahedron.
+    if (same_face(next(h), prev(t)) && same_face(prev(h), next(t))) return {Obstacle::part, kNone};
+  }
+  Collapse result;
+  const auto examine = [&](std::int32_t x) {
+    if (x == a || x == c || x == d || result.obstacle != Obstacle::none) return;
+    if (joined(x, a)) result = {Obstacle::cycle, x};
+  };
+  each_corner(b, [&](std::int32_t g) {
+    examine(surface_.target(g));
+    if (surface_.twin[prev(g)] == kNone) examine(surface_.origin(prev(g)));
+  });
+  return result;
+}
+
+void SurfaceEditor::unite(std::int32_t h, std::int32_t other) {
+  if (h != kNone) surface_.twin[h] = other;
+  if (other != kNone) surface_.twin[other] = h;
+}
+
+/// A face loses the edge opposite to its corner; the half-edges across its other two edges, one
+/// `into` the corner and one `from` it, become twins. `gone` left the corner. result: a half-edge
+/// that leaves the vertex where the lost edge was, or kNone.
+std::int32_t SurfaceEditor::fold(std::int32_t gone, std::int32_t into, std::int32_t from) {
+  std::int32_t& outgoing = surface_.outgoing[surface_.origin(gone)];
+  // On a boundary `gone` had no twin, and `from`, which now has none, is the first of the fan.
+  if (outgoing == gone) outgoing = from != kNone ? from : next(into);
+  unite(into, from);
+  return into != kNone ? into : from != kNone ? next(from) : kNone;
+}
+
+/// The half-edge with which the fan of an origin begins.
+std::int32_t SurfaceEditor::first_of_fan(std::int32_t any) const {
+  std::int32_t h = any;
+  while (surface_.twin[h] != kNone) {
+    h = next(surface_.twin[h]);
+    if (h == any) break;
+  }
+  return h;
+}
+
+void SurfaceEditor::remove_face(std::int32_t f) {
+  surface_.triangles[f] = {kNone, kNone, kNone};
+  for (int i = 0; i < 3; ++i) surface_.twin[halfedge(f, i)] = kNone;
+  free_faces_.push_back(f);
+  --face_count_;
+}
+
+std::int32_t SurfaceEditor::add_face(const std::array<std::int32_t, 3>& corners) {
+  ++face_count_;
+  if (!free_faces_.empty()) {
+    const std::int32_t f = free_faces_.back();
+    free_faces_.pop_back();
+    surface_.triangles[f] = corners;
+    return f;
+  }
+  surface_.triangles.push_back(corners);
+  surface_.twin.resize(surface_.twin.size() + 4, kNone);
+  return static_cast<std::int32_t>(surface_.triangles.size()) - 1;
+}
+
+std::int32_t SurfaceEditor::add_vertex(const Birth& birth) {
+  ++vertex_count_;
+  births_.push_back(birth);
+  surface_.outgoing.push_back(kNone);
+  return static_cast<std::int32_t>(surface_.outgoing.size()) - 1;
+}
+
+void SurfaceEditor::collapse(std::int32_t h) {
+  const std::int32_t t = surface_.twin[h];
+  const std::int32_t a = surface_.origin(h);
+  const std::int32_t b = surface_.target(h);
+  const bool boundary = surface_.on_boundary(a) || surface_.on_boundary(b);
+  for (const std::int32_t g : corners_of(b)) surface_.triangles[face_of(g)][corner_of(g)] = a;
+
+  // Face (a, b, c), and (b, a, d) on the other side.
+  std::int32_t left = fold(prev(h), surface_.twin[prev(h)], surface_.twin[next(h)]);
+  if (t != kNone) {
+    const std::int32_t other = fold(prev(t), surface_.twin[prev(t)], surface_.twin[next(t)]);
+    if (left == kNone) left = other;
+    remove_face(face_of(t));
+  }
+  remove_face(face_of(h));
+  surface_.outgoing[b] = kNone;
+  surface_.outgoing[a] = boundary ? first_of_fan(left) : left;
+  --vertex_count_;
+}
+
+/// Gives every fan but the first among the corners of v a copy of the vertex.
+void SurfaceEditor::separate_fans(std::int32_t v, Corners corners) {
+  std::sort(corners.begin(), corners.end());
+  std::vector<bool> seen(corners.size(), false);
+  bool first = true;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    if (seen[k]) continue;
+    const std::int32_t vertex = first ? v : add_vertex({v, kNone});
+    first = false;
+    const std::int32_t start = first_of_fan(corners[k]);
+    surface_.outgoing[vertex] = start;
+    std::int32_t h = start;
+    do {
+      const auto at = std::lower_bound(corners.begin(), corners.end(), h);
+      seen[at - corners.begin()] = true;
+      surface_.triangles[face_of(h)][corner_of(h)] = vertex;
+      h = surface_.ccw(h);
+    } while (h != kNone && h != start);
+  }
+}
+
+std::array<std::int32_t, 2> SurfaceEditor::cut_cycle(std::int32_t a, std::int32_t b,
+                                                     std::int32_t c) {
+  const std::array<std::int32_t, 3> cycle = {a, b, c};
+  std::array<Corners, 3> corners;
+  // Half-edges along the cycle, and those against it.
+  std::array<std::array<std::int32_t, 3>, 2> rim;
+  for (int i = 0; i < 3; ++i) {
+    corners[i] = corners_of(cycle[i]);
+    const std::int32_t h = find(cycle[i], cycle[(i + 1) % 3]);
+    const std::int32_t t = surface_.twin[h];
+    const bool along = surface_.origin(h) == cycle[i];
+    rim[0][i] = along ? h : t;
+    rim[1][i] = along ? t : h;
+  }
+  std::array<std::int32_t, 2> cover = {kNone, kNone};
+  for (int side = 0; side < 2; ++side) {
+    if (rim[side] == std::array<std::int32_t, 3>{kNone, kNone, kNone}) continue;
+    // The cover of one side runs as the rim of the other: corner i of the second leaves cycle[i].
+    const std::array<int, 3> order = side == 0 ? std::array{0, 2, 1} : std::array{0, 1, 2};
+    cover[side] = add_face({cycle[order[0]], cycle[order[1]], cycle[order[2]]});
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t h = halfedge(cover[side], k);
+      const int edge = side == 0 ? order[(k + 1) % 3] : order[k];
+      corners[order[k]].push_back(h);
+      unite(h, rim[side][edge]);
+    }
+  }
+  for (int i = 0; i < 3; ++i) separate_fans(cycle[i], std::move(corners[i]));
+  return cover;
+}
+
+void SurfaceEditor::cut_chord(std::int32_t h) {
+  const std::int32_t a = surface_.origin(h);
+  const std::int32_t b = surface_.target(h);
+  Corners at_a = corners_of(a);
+  Corners at_b = corners_of(b);
+  surface_.twin[surface_.twin[h]] = kNone;
+  surface_.twin[h] = kNone;
+  separate_fans(a, std::move(at_a));
+  separate_fans(b, std::move(at_b));
+}
+
+std::int32_t SurfaceEditor::split(std::int32_t h) {
+  const std::int32_t t = surface_.twin[h];
+  const std::int32_t a = surface_.origin(h);
+  const std::int32_t b = surface_.target(h);
+  const std::int32_t middle = add_vertex({a, b});
+  // (a, b, c) becomes (a, m, c) and (m, b, c): `g` goes from `end` to m, the new face takes the
+  // edge that left its target.
+  const auto halve = [&](std::int32_t g) {
+    const std::int32_t end = surface_.target(g);
+    const std::int32_t apex = surface_.origin(prev(g));
+    const std::int32_t across = surface_.twin[next(g)];
+    const std::int32_t f = add_face({middle, end, apex});
+    surface_.triangles[face_of(g)][corner_of(next(g))] = middle;
+    unite(halfedge(f, 1), across);
+    unite(halfedge(f, 2), next(g));
+    if (surface_.outgoing[end] == next(g)) surface_.outgoing[end] = halfedge(f, 1);
+    return halfedge(f, 0);
+  };
+  const std::int32_t beyond_h = halve(h);
+  surface_.twin[beyond_h] = t;
+  if (t != kNone) {
+    const std::int32_t beyond_t = halve(t);
+    unite(h, beyond_t);
+    unite(t, beyond_h);
+  }
+  surface_.outgoing[middle] = beyond_h;
+  return middle;
+}
+
+SurfaceEditor::Dropped SurfaceEditor::drop_part(std::int32_t face) {
+  Dropped dropped;
+  std::vector<std::int32_t> pending = {face};
+  while (!pending.empty()) {
+    const std::int32_t f = pending.back();
+    pending.pop_back();
+    if (!has_face(f)) continue;
+    for (int i = 0; i < 3; ++i) {
+      const std::int32_t t = surface_.twin[halfedge(f, i)];
+      if (t != kNone) pending.push_back(face_of(t));
+      std::int32_t& outgoing = surface_.outgoing[surface_.triangles[f][i]];
+      if (outgoing == kNone) continue;
+      outgoing = kNone;
+      ++dropped.vertices;
+    }
+    remove_face(f);
+    ++dropped.faces;
+  }
+  vertex_count_ -= dropped.vertices;
+  return dropped;
+}
+
+}  // namespace semigeo::kernels
