@@ -72,8 +72,7 @@ EvolvingSurface::EvolvingSurface(kernels::Surface surface, const EvolutionOption
   mesh_.surface = std::move(surface);
   std::vector<Eigen::Vector3f>().swap(mesh_.surface.points);
   target_faces_ = mesh_.surface.face_count();
-  for (const PartMeasure& part : measure_parts(mesh_, context_))
-    part_reference_.push_back(reference_of(part));
+  part_reference_ = measure_parts(mesh_, context_);
 
   adopt_mesh();
   angle_weighted_normals();
@@ -236,8 +235,19 @@ LevelFields EvolvingSurface::advance(bool move) {
   return fields;
 }
 
-double EvolvingSurface::reference_of(const PartMeasure& part) const {
-  return options_.rescale == Rescale::edges ? part.mean_edge_length() : part.radius_of_gyration();
+/// 5.1, scale factor. Differs: the thesis compares mean edge lengths, which noise makes longer.
+/// Volume and radius of gyration do not know noise; thin walls keep their volume, blades that
+/// shrink to their axis their radius, and so the smaller factor is right for either.
+double EvolvingSurface::restoring_factor(const PartMeasure& was, const PartMeasure& is) const {
+  const auto ratio = [](double before, double after) {
+    if (!(before > 0 && after > 0)) return 1.0;
+    return std::clamp(before / after, 1 / kMaxRestoration, kMaxRestoration);
+  };
+  if (options_.rescale == Rescale::edges)
+    return ratio(was.mean_edge_length(), is.mean_edge_length());
+  const double factor = ratio(was.radius_of_gyration(), is.radius_of_gyration());
+  if (!(was.volume() > 0 && is.volume() > 0)) return factor;
+  return std::min(factor, ratio(std::cbrt(was.volume()), std::cbrt(is.volume())));
 }
 
 /// Rescales each part about its centroid to what it was (thesis 5.1), if that is wanted. result:
@@ -250,13 +260,8 @@ std::vector<PartMeasure> EvolvingSurface::restore_size() {
   std::vector<PartMeasure> parts = measure_parts(mesh_, context_);
   if (options_.rescale == Rescale::none || options_.schedule != Schedule::uniform) return parts;
   std::vector<Restoration> restorations(parts.size());
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const double left = reference_of(parts[i]);
-    if (!(left > 0 && part_reference_[i] > 0)) continue;
-    restorations[i] = {
-        parts[i].centroid(),
-        std::clamp(part_reference_[i] / left, 1 / kMaxRestoration, kMaxRestoration)};  // 5.1
-  }
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    restorations[i] = {parts[i].centroid(), restoring_factor(part_reference_[i], parts[i])};
   context_.workers.for_blocks(vertex_count(), kFaceBlock, [&](IndexRange range) {
     for (auto v = range.begin; v < range.end; ++v) {
       const Restoration& r = restorations[mesh_.surface.part[v]];
@@ -287,8 +292,7 @@ std::vector<PartMeasure> EvolvingSurface::remesh(std::vector<PartMeasure> parts)
   remeshed_ = result.counts;
   if (!result.changed()) return std::move(result.parts);
   target_faces_ -= result.counts.dropped_faces;
-  part_reference_.clear();
-  for (const PartMeasure& part : result.parts) part_reference_.push_back(reference_of(part));
+  part_reference_ = result.parts;
   adopt_mesh();
   connectivity_ = connectivity();
   return std::move(result.parts);

@@ -57,7 +57,7 @@ enum class Schedule {
 
 /// What each part gets back after a smoothing (5.1).
 enum class Rescale {
-  size,   ///< its radius of gyration
+  size,   ///< its radius of gyration or, if that takes less, the volume that it encloses
   edges,  ///< its mean edge length, as in the thesis
   none    ///< nothing
 };
@@ -108,7 +108,7 @@ class EvolvingSurface {
   void sharpen_normals();
   template <typename VertexAt>
   void sharpen(std::int64_t count, const VertexAt& vertex_at, std::vector<std::uint8_t>& truncated);
-  double reference_of(const PartMeasure& part) const;
+  double restoring_factor(const PartMeasure& was, const PartMeasure& is) const;
   std::vector<PartMeasure> restore_size();
   std::vector<PartMeasure> remesh(std::vector<PartMeasure> parts);
   void adopt_mesh();
@@ -118,7 +118,7 @@ class EvolvingSurface {
   EvolutionOptions options_;
   kernels::LevelMesh mesh_;                   ///< internal units
   std::int64_t target_faces_ = 0;             ///< what refining keeps up
-  std::vector<double> part_reference_;        ///< what rescaling gives back, internal units
+  std::vector<PartMeasure> part_reference_;   ///< what rescaling gives back, internal units
   std::vector<std::uint8_t> part_has_patch_;  ///< at the current level
   double unit_ = 1;                           ///< scan units per internal unit
   double mean_edge_length_ = 0;               ///< internal units

@@ -9,6 +9,8 @@ namespace semigeo::jobs {
 namespace {
 
 constexpr std::int64_t kFaceBlock = 8192;
+/// Of the cube of the mean radius; a ball has 4. Below, the volume may be one of folds.
+constexpr double kLeastVolume = 1e-3;
 
 /// Faces one after the other that belong to one part.
 struct Stretch {
@@ -22,6 +24,7 @@ void add_face(const kernels::LevelMesh& mesh, std::int32_t f, PartMeasure& sum) 
   const std::array<Eigen::Vector3d, 3> p = {mesh.point(t[0]), mesh.point(t[1]), mesh.point(t[2])};
   for (int i = 0; i < 3; ++i) {
     const std::int32_t h = kernels::halfedge(f, i);
+    sum.boundary_edges += surface.twin[h] == kernels::kNone;
     if (surface.twin[h] > h) continue;  // counted from the other side
     sum.edge_length += (p[i == 2 ? 0 : i + 1] - p[i]).norm();
     sum.edges += 1;
@@ -30,8 +33,9 @@ void add_face(const kernels::LevelMesh& mesh, std::int32_t f, PartMeasure& sum) 
   const Eigen::Vector3d corners = p[0] + p[1] + p[2];
   sum.twice_area += twice_area;
   sum.moment += twice_area * corners;
-  sum.second_moment += twice_area * (p[0].squaredNorm() + p[1].squaredNorm() + p[2].squaredNorm() +
-                                     corners.squaredNorm());
+  sum.corners += corners;
+  sum.squared_corners += p[0].squaredNorm() + p[1].squaredNorm() + p[2].squaredNorm();
+  sum.six_volumes += p[0].dot(p[1].cross(p[2]));
   ++sum.faces;
 }
 
@@ -42,7 +46,10 @@ PartMeasure& PartMeasure::operator+=(const PartMeasure& other) {
   edges += other.edges;
   twice_area += other.twice_area;
   moment += other.moment;
-  second_moment += other.second_moment;
+  corners += other.corners;
+  squared_corners += other.squared_corners;
+  six_volumes += other.six_volumes;
+  boundary_edges += other.boundary_edges;
   faces += other.faces;
   return *this;
 }
@@ -53,8 +60,17 @@ Eigen::Vector3d PartMeasure::centroid() const {
 }
 
 double PartMeasure::radius_of_gyration() const {
-  if (!(twice_area > 0)) return 0;
-  return std::sqrt(std::max(0.0, second_moment / (12 * twice_area) - centroid().squaredNorm()));
+  if (faces == 0) return 0;
+  const double count = 3.0 * static_cast<double>(faces);
+  const Eigen::Vector3d mean = corners / count;
+  return std::sqrt(std::max(0.0, squared_corners / count - mean.squaredNorm()));
+}
+
+double PartMeasure::volume() const {
+  const double volume = six_volumes / 6;
+  const bool encloses =
+      boundary_edges == 0 && volume > kLeastVolume * std::pow(radius_of_gyration(), 3);
+  return encloses ? volume : 0;
 }
 
 std::vector<PartMeasure> measure_parts(const kernels::LevelMesh& mesh,

@@ -42,7 +42,9 @@ def check_levels(file, levels, compression):
         assert sorted(group) == sorted(wanted)
         attributes = dict(group.attrs)
         assert attributes == {"iteration": k, "step": 0.5, "scale": 0.25 + k,
-                              "mean_edge_length": 1.5, "parts": 50}, attributes
+                              "mean_edge_length": 1.5, "parts": 50, "shortest_side": 0.125,
+                              "split": 1, "collapsed": 2, "torn": 3, "inserted": 4, "removed": 5,
+                              "dropped_parts": 6}, attributes
         for name, values in wanted.items():
             check_same(group[name], values, f"{k} {name}")
             assert group[name].fletcher32
@@ -109,7 +111,7 @@ def check_header(file, digest):
     assert text["job_key"] == "key-of-the-job" and text["length_unit"] == "mm"
     assert text["parameters"] == '{"levels": 3}'
     assert text["repairs"] == '{"duplicate_faces": 2}'
-    assert file.attrs["complete"] == 1 and file.attrs["format_version"] == 1
+    assert file.attrs["complete"] == 1 and file.attrs["format_version"] == 2
     assert list(file.attrs["origin"]) == [1000.5, -2, 3]
 
 

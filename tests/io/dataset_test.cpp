@@ -79,6 +79,9 @@ TEST_P(DatasetRoundTrip, EverythingComesBack) {
     EXPECT_EQ(info.scale, level.attributes.scale);
     EXPECT_EQ(info.mean_edge_length, level.attributes.mean_edge_length);
     EXPECT_EQ(info.parts, level.attributes.parts);
+    EXPECT_EQ(info.shortest_side, level.attributes.shortest_side);
+    for (const LevelCount& count : kLevelCounts)
+      EXPECT_EQ(info.*count.count, level.attributes.*count.count) << count.name;
     EXPECT_EQ(info.vertices, sample().vertices_of(k));
     EXPECT_EQ(info.triangles, sample().triangles_of(k));
     EXPECT_EQ(dataset.read_floats(k, "points"), flat(level.points));
@@ -227,12 +230,14 @@ TEST(Dataset, OtherFilesAreRefusedWithAReason) {
             std::string::npos);
   Hdf5File future = Hdf5File::create(folder / "future.h5");
   future.write_attribute("/", "format", "semigeo-dataset");
-  future.write_attribute("/", "format_version", std::int64_t{2});
+  future.write_attribute("/", "format_version", kDatasetFormatVersion + 1);
   future.close();
-  EXPECT_NE(failure_of_verify(folder / "future.h5").find("format 2"), std::string::npos);
+  EXPECT_NE(failure_of_verify(folder / "future.h5")
+                .find("format " + std::to_string(kDatasetFormatVersion + 1)),
+            std::string::npos);
   Hdf5File torn = Hdf5File::create(folder / "torn.h5");
   torn.write_attribute("/", "format", "semigeo-dataset");
-  torn.write_attribute("/", "format_version", std::int64_t{1});
+  torn.write_attribute("/", "format_version", kDatasetFormatVersion);
   torn.write_attribute("/", "job_key", "key");
   torn.close();
   EXPECT_NE(failure_of_verify(folder / "torn.h5").find("not written to its end"),

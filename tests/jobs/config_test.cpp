@@ -14,7 +14,7 @@ TEST(ConfigTest, ParametersAreJsonWithSortedKeys) {
       to_json(SurfaceParameters{}),
       R"({"compression":"deflate","coordinates":"semigeodesic","decimate":"0.0 edges",)"
       R"("fill_holes":0,"length_unit":"unknown","levels":8,"principal":false,)"
-      R"("rescale":"edges","schedule":"uniform","step":1.0,"surface":"curved","target_vertices":0})");
+      R"("remesh":true,"rescale":"size","schedule":"uniform","step":1.0,"surface":"curved","target_vertices":0})");
   const SurfaceParameters other = {.levels = 3,
                                    .preparation = {.fill_holes = 40,
                                                    .decimate = 0.25,
@@ -23,7 +23,8 @@ TEST(ConfigTest, ParametersAreJsonWithSortedKeys) {
                                    .evolution = {.curved = false,
                                                  .coordinates = kernels::Coordinates::polar,
                                                  .schedule = Schedule::octaves,
-                                                 .rescale = false,
+                                                 .rescale = Rescale::edges,
+                                                 .remesh = false,
                                                  .principal = true,
                                                  .step_factor = 0.1},
                                    .compression = io::Compression::none,
@@ -32,7 +33,7 @@ TEST(ConfigTest, ParametersAreJsonWithSortedKeys) {
       to_json(other),
       R"({"compression":"none","coordinates":"polar","decimate":"0.25 length units",)"
       R"("fill_holes":40,"length_unit":"m\"m","levels":3,"principal":true,)"
-      R"("rescale":"none","schedule":"octaves","step":0.1,"surface":"flat","target_vertices":1993})");
+      R"("remesh":false,"rescale":"edges","schedule":"octaves","step":0.1,"surface":"flat","target_vertices":1993})");
 }
 
 TEST(ConfigTest, EveryParameterShows) {
@@ -50,7 +51,7 @@ TEST(ConfigTest, EveryParameterShows) {
     if (field >= 8) changed.preparation.decimate = 1;
     if (field == 9) changed.preparation.decimate_in_length_units = true;
     if (field == 10) changed.preparation.fill_holes = 3;
-    if (field == 12) changed.evolution.rescale = false;
+    if (field == 12) changed.evolution.rescale = Rescale::none;
     if (field == 11) changed.preparation.target_vertices = 100;
     if (field == 7) changed.evolution.principal = true;
     EXPECT_TRUE(texts.insert(to_json(changed)).second) << "field " << field;

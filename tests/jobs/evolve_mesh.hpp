@@ -9,7 +9,8 @@
 
 namespace semigeo::jobs {
 
-/// The levels of a mesh, as the surface job computes them, with the vertices in the mesh's order.
+/// The levels of a mesh, as the surface job computes them, in the order of their rows: as long as
+/// the connectivity does not change, the mesh's own order of vertices.
 struct EvolvedMesh {
   kernels::Surface surface;  ///< as built: connectivity, and points relative to `origin`
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
@@ -21,13 +22,14 @@ struct EvolvedMesh {
 };
 
 template <typename Value>
-void restore_order(std::vector<Value>& values, const std::vector<std::int32_t>& order) {
-  std::vector<Value> restored(values.size());
-  for (std::size_t i = 0; i < order.size(); ++i) restored[order[i]] = values[i];
-  values = std::move(restored);
+void put_in_order(std::vector<Value>& values, const std::vector<std::int32_t>& order) {
+  if (values.empty()) return;
+  std::vector<Value> rows(values.size());
+  for (std::size_t i = 0; i < order.size(); ++i) rows[i] = values[order[i]];
+  values = std::move(rows);
 }
 
-/// Level 0 and `smoothings` more.
+/// Level 0 and `smoothings` more, or as many as there are before the surface vanishes.
 inline EvolvedMesh evolve_mesh(kernels::TriangleMesh mesh, int smoothings,
                                const EvolutionOptions& options = {}, int threads = 2) {
   engine::Workers workers(threads);
@@ -36,20 +38,19 @@ inline EvolvedMesh evolve_mesh(kernels::TriangleMesh mesh, int smoothings,
   EvolvedMesh result{std::move(built.surface), built.origin, {}};
   const auto order = kernels::locality_order(result.surface);
   EvolvingSurface evolving(kernels::reordered(result.surface, order), options,
-                           {workers, observer, {}});
-  for (int k = 0; k <= smoothings; ++k) {
+                           {workers, observer, {}}, {order, {}, {}});
+  for (int k = 0; k <= smoothings && !evolving.vanished(); ++k) {
     LevelFields fields = evolving.advance(k < smoothings);
-    restore_order(fields.points, order);
-    restore_order(fields.normals, order);
-    restore_order(fields.gaussian_curvature, order);
-    restore_order(fields.mean_curvature, order);
-    restore_order(fields.patch_completeness, order);
-    if (options.principal) {
-      restore_order(fields.principal_curvature_1, order);
-      restore_order(fields.principal_curvature_2, order);
-      restore_order(fields.principal_direction_1, order);
-      restore_order(fields.principal_direction_2, order);
-    }
+    const std::vector<std::int32_t>& rows = *fields.stored_order;
+    put_in_order(fields.points, rows);
+    put_in_order(fields.normals, rows);
+    put_in_order(fields.gaussian_curvature, rows);
+    put_in_order(fields.mean_curvature, rows);
+    put_in_order(fields.patch_completeness, rows);
+    put_in_order(fields.principal_curvature_1, rows);
+    put_in_order(fields.principal_curvature_2, rows);
+    put_in_order(fields.principal_direction_1, rows);
+    put_in_order(fields.principal_direction_2, rows);
     result.levels.push_back(std::move(fields));
   }
   return result;
