@@ -10,9 +10,12 @@
 #include "kernels/hole_filling.hpp"
 #include "kernels/surface_builder.hpp"
 #include "tests/support/shapes.hpp"
+#include "tests/support/soundness.hpp"
 
 namespace semigeo::kernels {
 namespace {
+
+using tests::fault_of;
 
 Surface built(TriangleMesh mesh) {
   return build_surface(std::move(mesh)).surface;
@@ -31,33 +34,7 @@ double area(const Surface& s) {
 /// Sound, and made of the input's vertices, parts and boundary loops.
 void expect_sound(const Surface& before, const DecimatedSurface& after) {
   const Surface& s = after.surface;
-  std::map<std::pair<int, int>, int> directed;
-  for (std::int32_t f = 0; f < s.face_count(); ++f)
-    for (int i = 0; i < 3; ++i) {
-      const std::int32_t h = halfedge(f, i);
-      EXPECT_EQ(++directed[std::pair(s.origin(h), s.target(h))], 1);
-      if (s.twin[h] == kNone) continue;
-      EXPECT_EQ(s.twin[s.twin[h]], h);
-      EXPECT_EQ(s.origin(s.twin[h]), s.target(h));
-    }
-  // Edges without a twin have none that was overlooked, and fans are whole.
-  std::vector<int> corners(s.vertex_count(), 0);
-  for (const auto& t : s.triangles)
-    for (const auto v : t) ++corners[v];
-  for (std::int32_t f = 0; f < s.face_count(); ++f)
-    for (int i = 0; i < 3; ++i)
-      if (s.twin[halfedge(f, i)] == kNone)
-        EXPECT_FALSE(
-            directed.contains(std::pair(s.target(halfedge(f, i)), s.origin(halfedge(f, i)))));
-  for (std::int32_t v = 0; v < s.vertex_count(); ++v) {
-    int met = 0;
-    std::int32_t h = s.outgoing[v];
-    do {
-      ++met;
-      h = s.ccw(h);
-    } while (h != kNone && h != s.outgoing[v]);
-    EXPECT_EQ(met, corners[v]);
-  }
+  EXPECT_EQ(fault_of(s), "");
   ASSERT_EQ(after.source_vertex.size(), s.points.size());
   EXPECT_TRUE(std::is_sorted(after.source_vertex.begin(), after.source_vertex.end()));
   for (std::size_t v = 0; v < s.points.size(); ++v)
