@@ -45,6 +45,8 @@ nlohmann::json level_json(const io::Dataset& dataset, int k) {
   const auto invalid = std::count(completeness.begin(), completeness.end(), 0.0f);
   const auto truncated =
       std::count_if(completeness.begin(), completeness.end(), [](float c) { return c < 1; });
+  nlohmann::json remeshing = nlohmann::json::object();
+  for (const io::LevelCount& count : io::kLevelCounts) remeshing[count.name] = info.*count.count;
   return {{"iteration", info.iteration},
           {"scale", info.scale},
           {"step", info.step},
@@ -52,6 +54,8 @@ nlohmann::json level_json(const io::Dataset& dataset, int k) {
           {"vertices", info.vertices},
           {"triangles", info.triangles},
           {"parts", info.parts},
+          {"shortest_side", info.shortest_side},
+          {"remeshing", std::move(remeshing)},
           {"gaussian_curvature", {gaussian.low, gaussian.high}},
           {"mean_curvature", {mean.low, mean.high}},
           {"invalid_vertices", invalid},
@@ -84,6 +88,16 @@ nlohmann::json dataset_json(const std::filesystem::path& path) {
           {"levels", std::move(levels)}};
 }
 
+/// "12 split, 9 collapsed, 1 torn"; what is not zero.
+std::string remeshing_in_words(const nlohmann::json& counts) {
+  std::string text;
+  for (const auto& [name, word] :
+       {std::pair("split", "split"), std::pair("collapsed", "collapsed"), std::pair("torn", "torn"),
+        std::pair("dropped_parts", "parts lost")})
+    if (counts[name] != 0) text += (text.empty() ? "" : ", ") + counts[name].dump() + " " + word;
+  return text;
+}
+
 void print_dataset(const nlohmann::json& d) {
   std::printf("%s\n", d["file"].get<std::string>().c_str());
   std::printf("  input       %s (xxh3 %s)\n", d["input_name"].get<std::string>().c_str(),
@@ -99,17 +113,18 @@ void print_dataset(const nlohmann::json& d) {
               d["digest"].get<std::string>().c_str());
   std::printf(
       "  level  scale       vertices   triangles  parts  K from .. to              "
-      "H from .. to              truncated  invalid\n");
+      "H from .. to              truncated  invalid  remeshed\n");
   int k = 0;
   for (const auto& level : d["levels"])
     std::printf(
         "  %5d  %-10.4g  %-9lld  %-9lld  %-5lld  %-11.4g .. %-11.4g  %-11.4g .. %-11.4g  "
-        "%-9lld  %lld\n",
+        "%-9lld  %-7lld  %s\n",
         k++, level["scale"].get<double>(), level["vertices"].get<long long>(),
         level["triangles"].get<long long>(), level["parts"].get<long long>(),
         level["gaussian_curvature"][0].get<double>(), level["gaussian_curvature"][1].get<double>(),
         level["mean_curvature"][0].get<double>(), level["mean_curvature"][1].get<double>(),
-        level["truncated_vertices"].get<long long>(), level["invalid_vertices"].get<long long>());
+        level["truncated_vertices"].get<long long>(), level["invalid_vertices"].get<long long>(),
+        remeshing_in_words(level["remeshing"]).c_str());
 }
 
 /// An archive: one line a dataset, from attributes and sizes alone.

@@ -239,6 +239,14 @@ std::string to_json(const kernels::SurfaceRepairs& repairs) {
   return repairs_json(repairs).dump();
 }
 
+std::string to_json(const kernels::RemeshCounts& remeshed) {
+  return nlohmann::json{
+      {"collapsed", remeshed.collapsed}, {"dropped_parts", remeshed.dropped_parts},
+      {"inserted", remeshed.inserted},   {"removed", remeshed.removed},
+      {"split", remeshed.split},         {"torn", remeshed.torn}}
+      .dump();
+}
+
 SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters& parameters,
                                  const engine::RunContext& context) {
   SurfaceJobResult result;

@@ -24,8 +24,9 @@ struct SurfaceJobResult {
   kernels::RemeshCounts remeshed;  ///< of all levels together
 };
 
-/// Repairs as JSON with sorted keys.
+/// Counts as JSON with sorted keys.
 std::string to_json(const kernels::SurfaceRepairs& repairs);
+std::string to_json(const kernels::RemeshCounts& remeshed);
 
 /// Reads and repairs one scan, evolves it through all levels and writes its dataset, which appears
 /// under its final name only when it is whole and verified. Throws io::Error on an unreadable or
