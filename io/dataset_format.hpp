@@ -33,8 +33,9 @@ struct LevelAttributes {
   double scale = 0;            ///< true sigma; strictly increasing from level to level
   double mean_edge_length = 0;
   std::int64_t parts = 0;    ///< connected parts
-  double shortest_side = 0;  ///< no edge is shorter; 0: not seen to
+  double shortest_side = 0;  ///< no side and no height is shorter; 0: not seen to
   // What remeshing did between the level before and this one.
+  std::int64_t flipped = 0;        ///< edges turned to the other diagonal of their two triangles
   std::int64_t split = 0;          ///< edges halved
   std::int64_t collapsed = 0;      ///< edges whose ends became one vertex
   std::int64_t torn = 0;           ///< necks, handles and strips cut
@@ -48,7 +49,8 @@ struct LevelCount {
   const char* name;
   std::int64_t LevelAttributes::*count;
 };
-inline constexpr std::array<LevelCount, 6> kLevelCounts = {{
+inline constexpr std::array<LevelCount, 7> kLevelCounts = {{
+    {"flipped", &LevelAttributes::flipped},
     {"split", &LevelAttributes::split},
     {"collapsed", &LevelAttributes::collapsed},
     {"torn", &LevelAttributes::torn},

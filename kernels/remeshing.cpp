@@ -24,20 +24,32 @@ void gather(std::vector<Value>& values, const std::vector<std::int32_t>& order) 
   values = std::move(result);
 }
 
-template <typename Wanted>
-void find_edges(const LevelMesh& mesh, std::int32_t begin, std::int32_t end,
-                std::vector<std::int32_t>& edges, const Wanted& wanted) {
-  for (std::int32_t f = begin; f < end; ++f)
-    for (int i = 0; i < 3 && mesh.surface.triangles[f][0] != kNone; ++i) {
-      const std::int32_t h = halfedge(f, i);
-      if (mesh.surface.twin[h] > h) continue;  // found from the other side
-      if (wanted(mesh.length2(h))) edges.push_back(h);
-    }
+/// Squared least height of a triangle.
+double squared_height(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                      const Eigen::Vector3d& c) {
+  const double longest2 =
+      std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+  return longest2 > 0 ? (b - a).cross(c - a).squaredNorm() / longest2 : 0;
+}
+
+template <typename Entry>
+void push(std::vector<Entry>& heap, const Entry& entry) {
+  heap.push_back(entry);
+  std::push_heap(heap.begin(), heap.end(), std::greater<>());
+}
+
+template <typename Entry>
+Entry pop(std::vector<Entry>& heap) {
+  std::pop_heap(heap.begin(), heap.end(), std::greater<>());
+  const Entry entry = heap.back();
+  heap.pop_back();
+  return entry;
 }
 
 }  // namespace
 
 RemeshCounts& RemeshCounts::operator+=(const RemeshCounts& other) {
+  flipped += other.flipped;
   collapsed += other.collapsed;
   split += other.split;
   torn += other.torn;
@@ -48,14 +60,26 @@ RemeshCounts& RemeshCounts::operator+=(const RemeshCounts& other) {
   return *this;
 }
 
-void find_short_edges(const LevelMesh& mesh, std::int32_t begin, std::int32_t end, double length,
-                      std::vector<std::int32_t>& edges) {
-  find_edges(mesh, begin, end, edges, [&](double length2) { return length2 < length * length; });
+double LevelMesh::height2(std::int32_t f) const {
+  const auto& t = surface.triangles[f];
+  return squared_height(point(t[0]), point(t[1]), point(t[2]));
+}
+
+void find_odd_faces(const LevelMesh& mesh, std::int32_t begin, std::int32_t end, double length,
+                    std::vector<std::int32_t>& faces) {
+  // No side is shorter than the least height.
+  for (std::int32_t f = begin; f < end; ++f)
+    if (!(mesh.height2(f) >= length * length)) faces.push_back(f);
 }
 
 void find_long_edges(const LevelMesh& mesh, std::int32_t begin, std::int32_t end, double length,
                      std::vector<std::int32_t>& edges) {
-  find_edges(mesh, begin, end, edges, [&](double length2) { return length2 > length * length; });
+  for (std::int32_t f = begin; f < end; ++f)
+    for (int i = 0; i < 3 && mesh.surface.triangles[f][0] != kNone; ++i) {
+      const std::int32_t h = halfedge(f, i);
+      if (mesh.surface.twin[h] > h) continue;  // found from the other side
+      if (mesh.length2(h) > length * length) edges.push_back(h);
+    }
 }
 
 Remesher::Remesher(LevelMesh& mesh, bool curved)
@@ -69,75 +93,124 @@ void Remesher::drop_part(std::int32_t face) {
   parts_changed_ = true;
 }
 
-/// The edge still is what it was when it was put on the heap; if it has changed, it was put there
-/// again.
-bool Remesher::current(const Edge& edge) const {
-  return editor_.has_face(face_of(edge.h)) && mesh_.length2(edge.h) == edge.length2;
-}
-
-void Remesher::push_short(std::int32_t h, double shortest) {
+void Remesher::push_edge(std::int32_t h) {
   if (h == kNone || !editor_.has_face(face_of(h))) return;
   const double length2 = mesh_.length2(h);
-  if (!(length2 < shortest * shortest)) return;
-  heap_.push_back({length2, h});
-  std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
+  if (length2 < shortest2_) push(edges_, {length2, h});
 }
 
-void Remesher::push_fan(std::int32_t v, double shortest) {
+void Remesher::push_face(std::int32_t f) {
+  if (!editor_.has_face(f)) return;
+  const double height2 = mesh_.height2(f);
+  if (!(height2 >= shortest2_)) push(faces_, {height2, f});
+}
+
+void Remesher::push_fan(std::int32_t v) {
   editor_.each_corner(v, [&](std::int32_t h) {
-    push_short(h, shortest);
-    if (mesh_.surface.twin[prev(h)] == kNone) push_short(prev(h), shortest);
+    push_edge(h);
+    if (mesh_.surface.twin[prev(h)] == kNone) push_edge(prev(h));
+    push_face(face_of(h));
   });
 }
 
-void Remesher::collapse(std::span<const std::int32_t> edges, double shortest) {
-  heap_.clear();
-  for (const std::int32_t h : edges)
-    if (editor_.has_face(face_of(h))) heap_.push_back({mesh_.length2(h), h});
-  std::make_heap(heap_.begin(), heap_.end(), std::greater<>());
+void Remesher::remove_odd(std::span<const std::int32_t> faces, double shortest) {
+  shortest2_ = shortest * shortest;
+  edges_.clear();
+  faces_.clear();
+  for (const std::int32_t f : faces) {
+    push_face(f);
+    for (int i = 0; i < 3; ++i) push_edge(halfedge(f, i));
+  }
+  remove_short_edges();
+  while (!faces_.empty()) {
+    const Entry face = pop(faces_);
+    if (!editor_.has_face(face.index) || mesh_.height2(face.index) != face.measure) continue;
+    remove_flat_face(face.index);
+    remove_short_edges();
+  }
+}
+
+void Remesher::remove_short_edges() {
+  while (!edges_.empty()) {
+    const Entry edge = pop(edges_);
+    if (!editor_.has_face(face_of(edge.index)) || mesh_.length2(edge.index) != edge.measure)
+      continue;
+    remove_edge(edge.index);
+  }
+}
+
+/// Whether the two faces of an edge would be less flat with the other diagonal between them.
+bool Remesher::flip_is_better(std::int32_t h) const {
+  const std::int32_t t = mesh_.surface.twin[h];
+  if (t == kNone) return false;
+  const Eigen::Vector3d a = mesh_.point(mesh_.surface.origin(h));
+  const Eigen::Vector3d b = mesh_.point(mesh_.surface.target(h));
+  const Eigen::Vector3d c = mesh_.point(mesh_.surface.origin(prev(h)));
+  const Eigen::Vector3d d = mesh_.point(mesh_.surface.origin(prev(t)));
+  return std::min(squared_height(a, d, c), squared_height(d, b, c)) >
+         std::min(squared_height(a, b, c), squared_height(b, a, d));
+}
+
+void Remesher::remove_flat_face(std::int32_t f) {
+  std::int32_t longest = halfedge(f, 0);
+  std::int32_t shortest = longest;
+  for (int i = 1; i < 3; ++i) {
+    const std::int32_t h = halfedge(f, i);
+    if (mesh_.length2(h) > mesh_.length2(longest)) longest = h;
+    if (mesh_.length2(h) < mesh_.length2(shortest)) shortest = h;
+  }
+  if (!flip_is_better(longest) || !editor_.may_flip(longest)) {
+    remove_edge(shortest);
+    push_face(f);  // what was in the way of the edge may have gone without it
+    return;
+  }
+  const std::int32_t h = editor_.flip(longest);
+  ++counts_.flipped;
+  push_edge(h);
+  push_face(face_of(h));
+  push_face(face_of(mesh_.surface.twin[h]));
+}
+
+/// Makes one vertex of two, or takes out of the way what prevents it.
+void Remesher::remove_edge(std::int32_t edge) {
   const Surface& surface = mesh_.surface;
-  while (!heap_.empty()) {
-    std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
-    const Edge edge = heap_.back();
-    heap_.pop_back();
-    if (!current(edge)) continue;
-    const std::int32_t h = editor_.from_larger_fan(edge.h);
-    const SurfaceEditor::Collapse check = editor_.may_collapse(h);
-    switch (check.obstacle) {
-      case SurfaceEditor::Obstacle::none:
-        merge(h, shortest);
-        break;
-      case SurfaceEditor::Obstacle::part:
-        drop_part(face_of(h));
-        break;
-      case SurfaceEditor::Obstacle::chord: {
-        const std::int32_t t = surface.twin[h];
-        editor_.cut_chord(h);
-        ++counts_.torn;
-        parts_changed_ = true;
-        carry_new_vertices();
-        push_short(h, shortest);
-        push_short(t, shortest);
-        break;
-      }
-      case SurfaceEditor::Obstacle::cycle: {
-        if (const std::int32_t spoke = spoke_inside(h, check.third); spoke != kNone) {
-          const std::int32_t keeper = surface.origin(spoke);
-          absorb(spoke);
-          push_fan(keeper, shortest);
-          break;
-        }
-        const auto covers = editor_.cut_cycle(surface.origin(h), surface.target(h), check.third);
-        ++counts_.torn;
-        parts_changed_ = true;
-        carry_new_vertices();
-        for (const std::int32_t f : covers) {
-          if (f == kNone) continue;
-          mark_face(f, 0);
-          for (int i = 0; i < 3; ++i) push_short(halfedge(f, i), shortest);
-        }
+  const std::int32_t h = editor_.from_larger_fan(edge);
+  const SurfaceEditor::Collapse check = editor_.may_collapse(h);
+  switch (check.obstacle) {
+    case SurfaceEditor::Obstacle::none:
+      merge(h);
+      break;
+    case SurfaceEditor::Obstacle::part:
+      drop_part(face_of(h));
+      break;
+    case SurfaceEditor::Obstacle::chord: {
+      const std::int32_t t = surface.twin[h];
+      editor_.cut_chord(h);
+      ++counts_.torn;
+      parts_changed_ = true;
+      carry_new_vertices();
+      push_edge(h);
+      push_edge(t);
+      break;
+    }
+    case SurfaceEditor::Obstacle::cycle: {
+      if (const std::int32_t spoke = spoke_inside(h, check.third); spoke != kNone) {
+        const std::int32_t keeper = surface.origin(spoke);
+        absorb(spoke);
+        push_fan(keeper);
         break;
       }
+      const auto covers = editor_.cut_cycle(surface.origin(h), surface.target(h), check.third);
+      ++counts_.torn;
+      parts_changed_ = true;
+      carry_new_vertices();
+      for (const std::int32_t f : covers) {
+        if (f == kNone) continue;
+        mark_face(f, 0);
+        push_face(f);
+        for (int i = 0; i < 3; ++i) push_edge(halfedge(f, i));
+      }
+      break;
     }
   }
 }
@@ -161,8 +234,8 @@ double Remesher::least_cosine(std::int32_t v, std::int32_t other, const Eigen::V
   return least;
 }
 
-/// Where two vertices become one: on the boundary if one of them is; else half way, unless that
-/// would turn a face over and an end would not.
+/// Where two vertices become one: on the boundary if one of them is; else half way if they are
+/// close and no face is turned over by it, else where faces turn least.
 Eigen::Vector3d Remesher::merged_point(std::int32_t a, std::int32_t b) const {
   const Eigen::Vector3d pa = mesh_.point(a);
   const Eigen::Vector3d pb = mesh_.point(b);
@@ -172,11 +245,12 @@ Eigen::Vector3d Remesher::merged_point(std::int32_t a, std::int32_t b) const {
   int fan = 0;
   editor_.each_corner(a, [&](std::int32_t) { ++fan; });
   if (fan > kLargeFan) return pa;
+  const bool close = (pb - pa).squaredNorm() < shortest2_;
   Eigen::Vector3d best = pa;
   double best_cosine = -2;
   for (const Eigen::Vector3d& p : {Eigen::Vector3d((pa + pb) / 2), pa, pb}) {
     const double cosine = std::min(least_cosine(a, b, p), least_cosine(b, a, p));
-    if (cosine > 0) return p;
+    if (close && cosine > 0) return p;
     if (!(cosine > best_cosine)) continue;
     best_cosine = cosine;
     best = p;
@@ -218,22 +292,21 @@ void Remesher::carry_over(std::int32_t a, std::int32_t b) {
   if (!mesh_.vertex_filled.empty()) mesh_.vertex_filled[a] &= mesh_.vertex_filled[b];
 }
 
-void Remesher::merge(std::int32_t h, double shortest) {
+void Remesher::merge(std::int32_t h) {
   const std::int32_t a = mesh_.surface.origin(h);
   const std::int32_t b = mesh_.surface.target(h);
   const Eigen::Vector3f p = merged_point(a, b).cast<float>();
   const bool stays = p == mesh_.points[a].head<3>();
   std::vector<std::int32_t> joining;
-  if (stays)
-    editor_.each_corner(b, [&](std::int32_t g) {
-      joining.push_back(g);
-      joining.push_back(prev(g));
-    });
-
+  if (stays) editor_.each_corner(b, [&](std::int32_t g) { joining.push_back(g); });
   mesh_.points[a].head<3>() = p;
   absorb(h);
-  if (!stays) push_fan(a, shortest);
-  for (const std::int32_t g : joining) push_short(g, shortest);
+  if (!stays) push_fan(a);
+  for (const std::int32_t g : joining) {
+    push_edge(g);
+    push_edge(prev(g));
+    push_face(face_of(g));
+  }
 }
 
 Eigen::Vector3f Remesher::middle(std::int32_t a, std::int32_t b) const {
@@ -276,17 +349,20 @@ void Remesher::mark_face(std::int32_t f, std::uint8_t filled) {
   mesh_.face_filled[f] = filled;
 }
 
-/// False if a new edge would be too short.
+/// False if a new face would be too small.
 bool Remesher::split(std::int32_t h, double shortest) {
   const Surface& surface = mesh_.surface;
   const std::int32_t t = surface.twin[h];
   const Eigen::Vector3d m = middle(surface.origin(h), surface.target(h)).cast<double>();
-  for (const std::int32_t v : {surface.origin(h), surface.target(h), surface.origin(prev(h)),
-                               t == kNone ? kNone : surface.origin(prev(t))})
-    if (v != kNone && !((mesh_.point(v) - m).squaredNorm() >= shortest * shortest)) return false;
-  const std::uint8_t here = mesh_.face_filled.empty() ? 0 : mesh_.face_filled[face_of(h)];
-  const std::uint8_t there =
-      mesh_.face_filled.empty() || t == kNone ? 0 : mesh_.face_filled[face_of(t)];
+  for (const std::int32_t g : {h, t})
+    for (int i = 0; i < 2 && g != kNone; ++i) {
+      const Eigen::Vector3d end = mesh_.point(i == 0 ? surface.origin(g) : surface.target(g));
+      const double height2 = squared_height(m, end, mesh_.point(surface.origin(prev(g))));
+      if (!(height2 >= shortest * shortest)) return false;
+    }
+  const bool marked = !mesh_.face_filled.empty();
+  const std::uint8_t here = marked ? mesh_.face_filled[face_of(h)] : 0;
+  const std::uint8_t there = marked && t != kNone ? mesh_.face_filled[face_of(t)] : 0;
   const std::int32_t v = editor_.split(h);
   ++counts_.split;
   carry_new_vertices();
@@ -298,26 +374,26 @@ bool Remesher::split(std::int32_t h, double shortest) {
 void Remesher::refine(std::span<const std::int32_t> edges, std::int64_t faces, double longest,
                       double shortest) {
   if (face_count() >= faces) return;
-  heap_.clear();
-  const auto push = [&](std::int32_t h) {
+  Heap heap;
+  const auto put = [&](std::int32_t h) {
     const double length2 = mesh_.length2(h);
-    if (length2 > longest * longest) heap_.push_back({length2, h});
+    if (length2 > longest * longest) heap.push_back({length2, h});
     return length2 > longest * longest;
   };
   for (const std::int32_t h : edges)
-    if (editor_.has_face(face_of(h))) push(h);
-  std::make_heap(heap_.begin(), heap_.end());
-  while (!heap_.empty() && face_count() < faces) {
-    std::pop_heap(heap_.begin(), heap_.end());
-    const Edge edge = heap_.back();
-    heap_.pop_back();
-    if (!current(edge) || !split(edge.h, shortest)) continue;
+    if (editor_.has_face(face_of(h))) put(h);
+  std::make_heap(heap.begin(), heap.end());
+  while (!heap.empty() && face_count() < faces) {
+    std::pop_heap(heap.begin(), heap.end());
+    const Entry edge = heap.back();
+    heap.pop_back();
+    const bool current = mesh_.length2(edge.index) == edge.measure;
+    if (!current || !split(edge.index, shortest)) continue;
     const auto v = static_cast<std::int32_t>(mesh_.vertex_count()) - 1;
     editor_.each_corner(v, [&](std::int32_t h) {
-      if (push(h)) std::push_heap(heap_.begin(), heap_.end());
+      if (put(h)) std::push_heap(heap.begin(), heap.end());
       const std::int32_t last = prev(h);
-      if (mesh_.surface.twin[last] == kNone && push(last))
-        std::push_heap(heap_.begin(), heap_.end());
+      if (mesh_.surface.twin[last] == kNone && put(last)) std::push_heap(heap.begin(), heap.end());
     });
   }
 }

@@ -21,13 +21,17 @@ struct LevelMesh {
 
   std::int64_t vertex_count() const { return static_cast<std::int64_t>(points.size()); }
   Eigen::Vector3d point(std::int32_t v) const { return points[v].head<3>().cast<double>(); }
+  /// Of a half-edge, squared.
   double length2(std::int32_t h) const {
     return (point(surface.target(h)) - point(surface.origin(h))).squaredNorm();
   }
+  /// Least height of a face, squared.
+  double height2(std::int32_t f) const;
 };
 
 /// What remeshing did.
 struct RemeshCounts {
+  std::int64_t flipped = 0;    ///< edges turned to the other diagonal of their two faces
   std::int64_t collapsed = 0;  ///< edges whose ends became one vertex
   std::int64_t split = 0;      ///< edges halved by a new vertex
   std::int64_t torn = 0;       ///< necks, handles and strips cut
@@ -40,20 +44,21 @@ struct RemeshCounts {
   RemeshCounts& operator+=(const RemeshCounts& other);
 };
 
-/// Appends those edges of faces [begin, end) that are shorter than `length`, each once, as
+/// Appends those faces of [begin, end) that have a side or a height shorter than `length`.
+void find_odd_faces(const LevelMesh& mesh, std::int32_t begin, std::int32_t end, double length,
+                    std::vector<std::int32_t>& faces);
+/// Appends those edges of faces [begin, end) that are longer than `length`, each once, as
 /// half-edges.
-void find_short_edges(const LevelMesh& mesh, std::int32_t begin, std::int32_t end, double length,
-                      std::vector<std::int32_t>& edges);
-/// Likewise, those that are longer.
 void find_long_edges(const LevelMesh& mesh, std::int32_t begin, std::int32_t end, double length,
                      std::vector<std::int32_t>& edges);
 
-/// Rids a mesh of odd triangles. Serial; the cost is that of the edges given and of a few linear
+/// Rids a mesh of odd triangles. Serial; the cost is that of what is found and of a few linear
 /// passes in `finish`. The result depends on the mesh alone, and is a surface with all that
 /// kernels/surface.hpp promises.
-/// Source: thesis 5.5, 6.1.1. Differs: the thesis removes odd triangles by a decimation that is
-/// not described; here their shortest edges are collapsed, and where that would pinch the surface
-/// it is cut and covered.
+/// Source: thesis 5.5, 6.1.1. Differs: the thesis looks at the shortest side only, which passes
+/// over triangles whose corners lie on a line, and removes odd triangles by a decimation that is
+/// not described. Here flat ones are flipped away or collapsed, short sides collapsed, and where
+/// that would pinch the surface it is cut and covered.
 class Remesher {
  public:
   /// The mesh must outlive the remesher; until `finish` its arrays have gaps. `curved`: new
@@ -63,14 +68,15 @@ class Remesher {
   /// Removes the part of a face.
   void drop_part(std::int32_t face);
 
-  /// Collapses edges shorter than `shortest`, the shortest first, until none is left. Where the
-  /// edge closes a neck or a handle (three edges that bound no face), that is cut through and both
-  /// ends are covered; a strip is cut; a triangle or a tetrahedron is dropped. `edges` must name
-  /// all edges that are too short.
-  void collapse(std::span<const std::int32_t> edges, double shortest);
+  /// Removes all triangles with a side or a height below `shortest`; `faces` must name them all.
+  /// Short sides are collapsed, the shortest first. Then a flat triangle has its longest side
+  /// flipped, if that makes the lesser height of the two faces greater, or its shortest collapsed.
+  /// Where an edge closes a neck or a handle (three edges that bound no face), that is cut through
+  /// and both ends are covered; a strip is cut; a triangle or a tetrahedron is dropped.
+  void remove_odd(std::span<const std::int32_t> faces, double shortest);
 
   /// Halves edges longer than `longest`, the longest first, until there are `faces` faces or
-  /// no such edge is left. No new edge becomes shorter than `shortest`.
+  /// no such edge is left. No new side or height becomes shorter than `shortest`.
   void refine(std::span<const std::int32_t> edges, std::int64_t faces, double longest,
               double shortest);
 
@@ -82,24 +88,32 @@ class Remesher {
   RemeshCounts finish();
 
  private:
-  struct Edge {
-    double length2;
-    std::int32_t h;
-    bool operator<(const Edge& other) const {
-      return length2 != other.length2 ? length2 < other.length2 : h < other.h;
+  /// An edge by its squared length, or a face by its squared least height.
+  struct Entry {
+    double measure;
+    std::int32_t index;
+    bool operator<(const Entry& other) const {
+      return measure != other.measure ? measure < other.measure : index < other.index;
     }
-    bool operator>(const Edge& other) const { return other < *this; }
+    bool operator>(const Entry& other) const { return other < *this; }
   };
+  /// Smallest or largest first. An entry whose edge or face has changed since is void: what
+  /// changes is put on the heap again.
+  using Heap = std::vector<Entry>;
 
-  bool current(const Edge& edge) const;
-  void merge(std::int32_t h, double shortest);
+  void remove_short_edges();
+  void remove_flat_face(std::int32_t f);
+  void remove_edge(std::int32_t h);
+  bool flip_is_better(std::int32_t h) const;
+  void merge(std::int32_t h);
   void absorb(std::int32_t h);
   void carry_over(std::int32_t a, std::int32_t b);
   std::int32_t spoke_inside(std::int32_t h, std::int32_t third) const;
   Eigen::Vector3d merged_point(std::int32_t a, std::int32_t b) const;
   double least_cosine(std::int32_t v, std::int32_t other, const Eigen::Vector3d& p) const;
-  void push_short(std::int32_t h, double shortest);
-  void push_fan(std::int32_t v, double shortest);
+  void push_edge(std::int32_t h);
+  void push_face(std::int32_t f);
+  void push_fan(std::int32_t v);
   Eigen::Vector3f middle(std::int32_t a, std::int32_t b) const;
   void carry_new_vertices();
   void mark_face(std::int32_t f, std::uint8_t filled);
@@ -113,7 +127,9 @@ class Remesher {
   bool parts_changed_ = false;
   std::int64_t first_new_;  ///< vertices from here on were made by editing
   RemeshCounts counts_;
-  std::vector<Edge> heap_;
+  double shortest2_ = 0;  ///< squared threshold of `remove_odd`
+  Heap edges_;
+  Heap faces_;
 };
 
 }  // namespace semigeo::kernels

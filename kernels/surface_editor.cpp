@@ -157,6 +157,38 @@ void SurfaceEditor::collapse(std::int32_t h) {
   --vertex_count_;
 }
 
+bool SurfaceEditor::may_flip(std::int32_t h) const {
+  const std::int32_t t = surface_.twin[h];
+  return t != kNone && !joined(surface_.origin(prev(h)), surface_.origin(prev(t)));
+}
+
+std::int32_t SurfaceEditor::flip(std::int32_t h) {
+  // (a, b, c) and (b, a, d) become (a, d, c) and (d, b, c).
+  const std::int32_t t = surface_.twin[h];
+  const std::int32_t f = face_of(h);
+  const std::int32_t g = face_of(t);
+  const std::int32_t a = surface_.origin(h);
+  const std::int32_t b = surface_.target(h);
+  const std::int32_t c = surface_.origin(prev(h));
+  const std::int32_t d = surface_.origin(prev(t));
+  // The four half-edges round them, where they were and where they will be.
+  const std::array<std::int32_t, 4> old = {next(t), prev(h), prev(t), next(h)};
+  const std::array<std::int32_t, 4> now = {halfedge(f, 0), halfedge(f, 2), halfedge(g, 0),
+                                           halfedge(g, 1)};
+  std::array<std::int32_t, 4> across;
+  for (int k = 0; k < 4; ++k) across[k] = surface_.twin[old[k]];
+  const std::array<std::int32_t, 4> vertex = {a, c, d, b};
+  for (int k = 0; k < 4; ++k) {
+    std::int32_t& outgoing = surface_.outgoing[vertex[k]];
+    if (outgoing == old[k] || outgoing == h || outgoing == t) outgoing = now[k];
+  }
+  surface_.triangles[f] = {a, d, c};
+  surface_.triangles[g] = {d, b, c};
+  for (int k = 0; k < 4; ++k) unite(now[k], across[k]);
+  unite(halfedge(f, 1), halfedge(g, 2));
+  return halfedge(f, 1);
+}
+
 /// Gives every fan but the first among the corners of v a copy of the vertex.
 void SurfaceEditor::separate_fans(std::int32_t v, Corners corners) {
   std::sort(corners.begin(), corners.end());

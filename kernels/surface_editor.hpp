@@ -51,6 +51,12 @@ class SurfaceEditor {
   /// Makes target(h) one with origin(h), which stays. `may_collapse` must allow it.
   void collapse(std::int32_t h);
 
+  /// Whether the edge of half-edge h may be turned to the other diagonal of its two faces: it has
+  /// two, and no edge joins their far corners yet.
+  bool may_flip(std::int32_t h) const;
+  /// Does it. result: the new edge.
+  std::int32_t flip(std::int32_t h);
+
   /// Cuts along the three edges between a, b and c, and covers what was on either side of the cut
   /// with a face. The vertices are doubled, so that a neck parts and a handle opens; a hole of
   /// three edges is closed. result: the two covers; kNone where one side had no faces.

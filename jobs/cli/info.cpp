@@ -91,9 +91,9 @@ nlohmann::json dataset_json(const std::filesystem::path& path) {
 /// "12 split, 9 collapsed, 1 torn"; what is not zero.
 std::string remeshing_in_words(const nlohmann::json& counts) {
   std::string text;
-  for (const auto& [name, word] :
-       {std::pair("split", "split"), std::pair("collapsed", "collapsed"), std::pair("torn", "torn"),
-        std::pair("dropped_parts", "parts lost")})
+  for (const auto& [name, word] : {std::pair("flipped", "flipped"), std::pair("split", "split"),
+                                   std::pair("collapsed", "collapsed"), std::pair("torn", "torn"),
+                                   std::pair("dropped_parts", "parts lost")})
     if (counts[name] != 0) text += (text.empty() ? "" : ", ") + counts[name].dump() + " " + word;
   return text;
 }

@@ -8,14 +8,14 @@ namespace semigeo::jobs {
 namespace {
 
 constexpr std::int64_t kFaceBlock = 8192;
-/// Edges that refining makes are longer than the shortest side by this factor, so that what the
+/// Sides and heights that refining makes exceed the shortest side by this factor, so that what the
 /// mean edge length does next cannot make them odd.
 constexpr double kMargin = 2;
 
-/// Edges that `find` picks from ranges of faces, in the order of the faces.
+/// Faces or edges that `find` picks from ranges of faces, in the order of the faces.
 template <typename Find>
-std::vector<std::int32_t> find_edges(const kernels::LevelMesh& mesh,
-                                     const engine::RunContext& context, const Find& find) {
+std::vector<std::int32_t> find_all(const kernels::LevelMesh& mesh,
+                                   const engine::RunContext& context, const Find& find) {
   const std::int64_t faces = mesh.surface.face_count();
   std::vector<std::vector<std::int32_t>> blocks((faces + kFaceBlock - 1) / kFaceBlock);
   const auto block_count = static_cast<std::int64_t>(blocks.size());
@@ -24,9 +24,9 @@ std::vector<std::int32_t> find_edges(const kernels::LevelMesh& mesh,
       find(static_cast<std::int32_t>(b * kFaceBlock),
            static_cast<std::int32_t>(std::min((b + 1) * kFaceBlock, faces)), blocks[b]);
   });
-  std::vector<std::int32_t> edges;
-  for (const auto& block : blocks) edges.insert(edges.end(), block.begin(), block.end());
-  return edges;
+  std::vector<std::int32_t> all;
+  for (const auto& block : blocks) all.insert(all.end(), block.begin(), block.end());
+  return all;
 }
 
 /// One face of each part that is to be dropped.
@@ -53,23 +53,27 @@ RemeshResult remesh_surface(kernels::LevelMesh& mesh, std::vector<PartMeasure> p
   while (true) {
     const double reference = std::max(options.first_edge_length, mean_edge_length(parts));
     result.shortest_side = kShortestSide * reference;
-    const auto find_short = [&](std::int32_t begin, std::int32_t end, auto& edges) {
-      kernels::find_short_edges(mesh, begin, end, result.shortest_side, edges);
+    const auto find_odd = [&](std::int32_t begin, std::int32_t end, auto& faces) {
+      kernels::find_odd_faces(mesh, begin, end, result.shortest_side, faces);
     };
-    const auto edges = find_edges(mesh, context, find_short);
-    if (edges.empty() && dropped.empty() && (refined || mesh.surface.face_count() >= options.faces))
+    const auto odd = find_all(mesh, context, find_odd);
+    if (odd.empty() && dropped.empty() && (refined || mesh.surface.face_count() >= options.faces))
       break;
     kernels::Remesher remesher(mesh, options.curved);
     for (const std::int32_t face : std::exchange(dropped, {})) remesher.drop_part(face);
-    remesher.collapse(edges, result.shortest_side);
+    remesher.remove_odd(odd, result.shortest_side);
     // Once: edges that become odd because the mean edge length has grown must not come back.
-    const std::int64_t target = options.faces - remesher.counts().dropped_faces;
-    if (!std::exchange(refined, true) && remesher.face_count() < target) {
-      const auto find_long = [&](std::int32_t begin, std::int32_t end, auto& found) {
-        kernels::find_long_edges(mesh, begin, end, reference, found);
-      };
-      remesher.refine(find_edges(mesh, context, find_long), target, reference,
-                      kMargin * result.shortest_side);
+    if (!std::exchange(refined, true)) {
+      const std::int64_t target = options.faces - remesher.counts().dropped_faces;
+      const double least = kMargin * result.shortest_side;
+      // Usually few faces are missing, and few edges are enough to choose from.
+      for (const double longer : {reference, 2 * least}) {
+        if (remesher.face_count() >= target) break;
+        const auto find_long = [&](std::int32_t begin, std::int32_t end, auto& edges) {
+          kernels::find_long_edges(mesh, begin, end, longer, edges);
+        };
+        remesher.refine(find_all(mesh, context, find_long), target, longer, least);
+      }
     }
     result.counts += remesher.finish();
     parts = measure_parts(mesh, context);

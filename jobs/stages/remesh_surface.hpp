@@ -9,8 +9,8 @@
 
 namespace semigeo::jobs {
 
-/// A triangle is odd if its shortest side is below so many mean edge lengths (thesis 5.5: "a small
-/// fraction").
+/// A triangle is odd if a side or a height of it is below so many mean edge lengths (thesis 5.5: "a
+/// small fraction").
 inline constexpr double kShortestSide = 0.1;
 
 struct RemeshOptions {
@@ -22,16 +22,16 @@ struct RemeshOptions {
 
 struct RemeshResult {
   kernels::RemeshCounts counts;
-  double shortest_side = 0;        ///< no edge is shorter
+  double shortest_side = 0;        ///< no side and no height is shorter
   std::vector<PartMeasure> parts;  ///< of the result
 
   bool changed() const { return counts != kernels::RemeshCounts{}; }
 };
 
-/// Drops parts, removes odd triangles, and refines. Afterwards no edge is shorter than
+/// Drops parts, removes odd triangles, and refines. Afterwards no side and no height is below
 /// kShortestSide times the mean edge length of the mesh, or of level 0 if that is longer: patches
-/// are laid with the step of level 0, and do not see what is finer. Refining ends at edges of that
-/// length too. Search over faces runs on all workers, editing is serial; the result does not depend
+/// are laid with the step of level 0, and do not see what is finer. Refining makes none below twice
+/// that. Search over faces runs on all workers, editing is serial; the result does not depend
 /// on the number of threads. `parts`: measures of the mesh as it comes.
 /// Source: thesis 5.5, 6.1.1.
 RemeshResult remesh_surface(kernels::LevelMesh& mesh, std::vector<PartMeasure> parts,

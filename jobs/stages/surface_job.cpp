@@ -149,6 +149,7 @@ io::LevelAttributes attributes_of(const LevelFields& fields, int iteration) {
           .mean_edge_length = fields.mean_edge_length,
           .parts = fields.parts,
           .shortest_side = fields.shortest_side,
+          .flipped = fields.remeshed.flipped,
           .split = fields.remeshed.split,
           .collapsed = fields.remeshed.collapsed,
           .torn = fields.remeshed.torn,
@@ -240,10 +241,13 @@ std::string to_json(const kernels::SurfaceRepairs& repairs) {
 }
 
 std::string to_json(const kernels::RemeshCounts& remeshed) {
-  return nlohmann::json{
-      {"collapsed", remeshed.collapsed}, {"dropped_parts", remeshed.dropped_parts},
-      {"inserted", remeshed.inserted},   {"removed", remeshed.removed},
-      {"split", remeshed.split},         {"torn", remeshed.torn}}
+  return nlohmann::json{{"collapsed", remeshed.collapsed},
+                        {"dropped_parts", remeshed.dropped_parts},
+                        {"flipped", remeshed.flipped},
+                        {"inserted", remeshed.inserted},
+                        {"removed", remeshed.removed},
+                        {"split", remeshed.split},
+                        {"torn", remeshed.torn}}
       .dump();
 }
 

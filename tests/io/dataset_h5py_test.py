@@ -44,7 +44,7 @@ def check_levels(file, levels, compression):
         assert attributes == {"iteration": k, "step": 0.5, "scale": 0.25 + k,
                               "mean_edge_length": 1.5, "parts": 50, "shortest_side": 0.125,
                               "split": 1, "collapsed": 2, "torn": 3, "inserted": 4, "removed": 5,
-                              "dropped_parts": 6}, attributes
+                              "dropped_parts": 6, "flipped": 7}, attributes
         for name, values in wanted.items():
             check_same(group[name], values, f"{k} {name}")
             assert group[name].fletcher32

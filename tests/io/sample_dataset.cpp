@@ -10,6 +10,7 @@ SampleLevel sample_level(const Sample& sample, int level) {
                        .mean_edge_length = 1.5,
                        .parts = 1 + (sample.vertices - 1) / 1000,
                        .shortest_side = 0.125,
+                       .flipped = 7,
                        .split = 1,
                        .collapsed = 2,
                        .torn = 3,

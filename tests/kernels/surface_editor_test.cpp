@@ -186,6 +186,26 @@ TEST(SurfaceEditorTest, ASplitHalvesBothFaces) {
   }
 }
 
+TEST(SurfaceEditorTest, AFlipTurnsAnEdgeToTheOtherDiagonal) {
+  for (const bool open : {false, true}) {
+    Surface s = built(open ? shapes::plane(1, 3) : shapes::icosphere(1));
+    SurfaceEditor editor(s);
+    for (std::int32_t f = 0; f < 18; ++f)
+      for (int i = 0; i < 3; ++i) {
+        const std::int32_t h = halfedge(f, i);
+        if (!editor.may_flip(h)) continue;
+        const std::int32_t c = s.origin(prev(h));
+        const std::int32_t d = s.origin(prev(s.twin[h]));
+        const std::int32_t now = editor.flip(h);
+        ASSERT_EQ(fault_of(s), "");
+        EXPECT_EQ(std::minmax(s.origin(now), s.target(now)), std::minmax(c, d));
+      }
+    EXPECT_EQ(euler_characteristic(s), open ? 1 : 2);
+  }
+  Surface solid = built(tetrahedron());
+  EXPECT_FALSE(SurfaceEditor(solid).may_flip(0));  // that edge is there already
+}
+
 TEST(SurfaceEditorTest, APartIsDroppedWhole) {
   TriangleMesh mesh = tetrahedron();
   for (const auto& p : shapes::icosphere(1).points) mesh.points.push_back(p);
@@ -216,6 +236,8 @@ TEST(SurfaceEditorTest, AnySequenceOfEditsLeavesASurface) {
         std::int32_t h = halfedge(f, static_cast<int>(random() % 3));
         if (random() % 8 < static_cast<unsigned>(run)) {
           editor.split(h);
+        } else if (random() % 3 == 0) {
+          if (editor.may_flip(h)) editor.flip(h);
         } else {
           h = editor.from_larger_fan(h);
           const auto check = editor.may_collapse(h);
