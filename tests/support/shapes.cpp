@@ -86,6 +86,12 @@ TriangleMesh torus(double major, double minor, int nu, int nv, double unevenness
   return mesh;
 }
 
+TriangleMesh rough_torus(double size) {
+  TriangleMesh mesh = torus(size, 0.4 * size, 80, 36, 0.3);
+  add_noise(mesh, 0.01 * size, 1);
+  return mesh;
+}
+
 TriangleMesh cylinder(double radius, double height, int around, int along) {
   TriangleMesh mesh;
   for (int i = 0; i < around; ++i)

@@ -16,6 +16,9 @@ TriangleMesh icosphere(int levels, double radius = 1);
 /// that edge lengths vary by about (1 + unevenness) / (1 - unevenness), and shears them.
 TriangleMesh torus(double major, double minor, int nu, int nv, double unevenness = 0);
 
+/// An uneven torus with noise, of radii `size` and 0.4 `size`: nothing about it is symmetric.
+TriangleMesh rough_torus(double size = 1);
+
 /// Open cylinder about the z axis from z = -height / 2.
 TriangleMesh cylinder(double radius, double height, int around, int along);
 
