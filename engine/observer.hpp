@@ -11,6 +11,11 @@ class Observer {
   virtual ~Observer() = default;
   /// `amount` units of work (vertices times levels) are done.
   virtual void worked(std::int64_t amount) { (void)amount; }
+  /// A stretch of a computation, by its name, took so many seconds of wall time.
+  virtual void timed(std::string_view stretch, double seconds) {
+    (void)stretch;
+    (void)seconds;
+  }
   /// A task of a graph ended; `error` is empty when it succeeded.
   virtual void task_ended(std::string_view task, std::string_view error) {
     (void)task;

@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "engine/stopwatch.hpp"
 #include "kernels/decimation.hpp"
 
 namespace semigeo::jobs {
@@ -17,6 +18,7 @@ using kernels::Surface;
 constexpr std::int64_t kPointBlock = 4096;
 
 void fill(PreparedSurface& prepared, std::int64_t max_edges, const engine::RunContext& context) {
+  const engine::Stopwatch stopwatch(context.observer, "filling");
   const Surface& surface = prepared.surface;
   const auto loops = kernels::boundary_loops(surface);
   std::vector<kernels::HolePatch> patches(loops.size());
@@ -71,6 +73,7 @@ std::vector<std::uint8_t> nearest_marks(const Surface& after, const Surface& bef
 
 void decimate(PreparedSurface& prepared, const PreparationOptions& options,
               const engine::RunContext& context) {
+  const engine::Stopwatch stopwatch(context.observer, "decimation");
   PreparationResult& result = prepared.result;
   if (options.decimate > 0)
     result.tolerance =

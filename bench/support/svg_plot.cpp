@@ -1,4 +1,4 @@
-#include "bench/accuracy/svg_plot.hpp"
+#include "bench/support/svg_plot.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <limits>
 
-namespace semigeo::accuracy {
+namespace semigeo::bench {
 namespace {
 
 constexpr double kPanelWidth = 340, kPanelHeight = 260;
@@ -225,4 +225,4 @@ std::string svg(const std::vector<Plot>& panels, int columns, const std::string&
   return result + "</svg>\n";
 }
 
-}  // namespace semigeo::accuracy
+}  // namespace semigeo::bench
