@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <ctime>
 #include <string_view>
 
 #include "engine/observer.hpp"
@@ -12,9 +13,10 @@ class Stopwatch {
  public:
   /// `stretch` and the observer must outlive it.
   Stopwatch(Observer& observer, std::string_view stretch)
-      : observer_(observer), stretch_(stretch), start_(Clock::now()) {}
+      : observer_(observer), stretch_(stretch), start_(Clock::now()), cpu_start_(std::clock()) {}
   ~Stopwatch() {
-    observer_.timed(stretch_, std::chrono::duration<double>(Clock::now() - start_).count());
+    observer_.timed(stretch_, std::chrono::duration<double>(Clock::now() - start_).count(),
+                    static_cast<double>(std::clock() - cpu_start_) / CLOCKS_PER_SEC);
   }
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;
@@ -24,6 +26,7 @@ class Stopwatch {
   Observer& observer_;
   std::string_view stretch_;
   Clock::time_point start_;
+  std::clock_t cpu_start_;
 };
 
 }  // namespace semigeo::engine

@@ -65,8 +65,10 @@ constexpr Column kColumns[] = {
     {"collapsed", [](const LevelReport& r) { return count(r.remeshed.collapsed); }, true},
     {"torn", [](const LevelReport& r) { return count(r.remeshed.torn); }, true},
     {"dropped_parts", [](const LevelReport& r) { return count(r.remeshed.dropped_parts); }, true},
-    {"remeshing_seconds", [](const LevelReport& r) { return r.remeshing_seconds; }, false},
-    {"smoothing_seconds", [](const LevelReport& r) { return r.smoothing_seconds; }, false},
+    {"remeshing_seconds", [](const LevelReport& r) { return r.remeshing.wall; }, false},
+    {"remeshing_cpu_seconds", [](const LevelReport& r) { return r.remeshing.cpu; }, false},
+    {"smoothing_seconds", [](const LevelReport& r) { return r.smoothing.wall; }, false},
+    {"smoothing_cpu_seconds", [](const LevelReport& r) { return r.smoothing.cpu; }, false},
 };
 
 }  // namespace

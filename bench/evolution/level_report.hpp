@@ -11,6 +11,19 @@
 
 namespace semigeo::evolution {
 
+/// By the clock on the wall, and of all threads together.
+struct Seconds {
+  double wall = 0;
+  double cpu = 0;
+
+  Seconds& operator+=(const Seconds& other) {
+    wall += other.wall;
+    cpu += other.cpu;
+    return *this;
+  }
+  Seconds operator-(const Seconds& other) const { return {wall - other.wall, cpu - other.cpu}; }
+};
+
 /// One level of one scan. Lengths are in the scan's unit where nothing else is said.
 struct LevelReport {
   std::int64_t vertices = 0;
@@ -25,8 +38,8 @@ struct LevelReport {
   double mean_edge = 0;
   double shortest_edge = 0;
   kernels::RemeshCounts remeshed;  ///< on the way from the level before
-  double remeshing_seconds = 0;    ///< on the way from the level before
-  double smoothing_seconds = 0;    ///< this level's curvature, and the smoothing to the next
+  Seconds remeshing;               ///< on the way from the level before
+  Seconds smoothing;               ///< this level's curvature, and the smoothing to the next
 };
 
 /// A number of a level under the name that it has in tables.

@@ -52,20 +52,20 @@ struct Options {
 /// the computation.
 class Clock : public engine::Observer {
  public:
-  void timed(std::string_view stretch, double seconds) override {
-    seconds_[std::string(stretch)] += seconds;
+  void timed(std::string_view stretch, double seconds, double cpu_seconds) override {
+    seconds_[std::string(stretch)] += {seconds, cpu_seconds};
   }
-  double take(const std::string& stretch) { return std::exchange(seconds_[stretch], 0.0); }
+  Seconds take(const std::string& stretch) { return std::exchange(seconds_[stretch], Seconds()); }
   /// Runs `body` as the stretch "body".
   template <typename Body>
   auto time(const Body& body) {
     const engine::Stopwatch stopwatch(*this, "body");
     return body();
   }
-  double body() { return take("body"); }
+  Seconds body() { return take("body"); }
 
  private:
-  std::map<std::string, double> seconds_;
+  std::map<std::string, Seconds> seconds_;
 };
 
 jobs::EvolutionOptions evolution_options(const Options& options) {
@@ -111,15 +111,15 @@ ScanReport measure(const Source& source, const Options& options, engine::Workers
   ScanReport report;
   report.name = source.name;
   kernels::TriangleMesh mesh = clock.time(source.mesh);
-  report.reading_seconds = clock.body();
+  report.reading = clock.body();
   kernels::BuiltSurface built = clock.time([&] { return kernels::build_surface(std::move(mesh)); });
-  report.repair_seconds = clock.body();
+  report.repair = clock.body();
   if (built.surface.face_count() == 0) throw std::runtime_error("no face is left after repair");
   report.scanned_vertices = built.surface.vertex_count();
   jobs::PreparedSurface prepared =
       prepare_surface(std::move(built.surface), options.preparation, context);
-  report.filling_seconds = clock.take("filling");
-  report.decimation_seconds = clock.take("decimation");
+  report.filling = clock.take("filling");
+  report.decimation = clock.take("decimation");
 
   LevelMeter meter(prepared.surface);
   std::vector<std::int32_t> order;
@@ -127,22 +127,22 @@ ScanReport measure(const Source& source, const Options& options, engine::Workers
     order = kernels::locality_order(prepared.surface);
     return kernels::reordered(prepared.surface, order);
   });
-  report.ordering_seconds = clock.body();
+  report.ordering = clock.body();
   prepared = {};
   const auto evolving = clock.time([&] {
     return std::make_unique<jobs::EvolvingSurface>(
         std::move(surface), evolution_options(options), context,
         jobs::Origins{.vertex = std::move(order), .vertex_filled = {}, .face_filled = {}});
   });
-  report.normals_seconds = clock.body();
-  double remeshing = 0;
+  report.normals = clock.body();
+  Seconds remeshing;
   for (int k = 0; k <= options.levels && !evolving->vanished(); ++k) {
     const jobs::LevelFields fields =
         clock.time([&] { return evolving->advance(k < options.levels); });
     report.levels.push_back(meter.measure(fields, context));
     LevelReport& level = report.levels.back();
-    level.remeshing_seconds = std::exchange(remeshing, clock.take("remeshing"));
-    level.smoothing_seconds = clock.body() - remeshing;
+    level.remeshing = std::exchange(remeshing, clock.take("remeshing"));
+    level.smoothing = clock.body() - remeshing;
   }
   return report;
 }
@@ -227,7 +227,8 @@ int main(int argc, char** argv) {
       "\n"
       "Distances moved are means over the descendants of level 0, in its mean edge lengths.\n"
       "remesh s: on the way to the level; smooth s: its curvature, and the smoothing to the next.\n"
-      "The share in the last line: remeshing, filling and decimation per second of smoothing.\n");
+      "Seconds are those of all threads together; --csv and --json have those on the wall as "
+      "well.\n");
   app.option_defaults()->always_capture_default();
   Options options;
   add_sources(app, options);

@@ -12,12 +12,12 @@ namespace {
 /// Seconds before level 0 under the names that they have in tables.
 struct Stretch {
   const char* name;
-  double ScanReport::*seconds;
+  Seconds ScanReport::*seconds;
 };
 constexpr Stretch kStretches[] = {
-    {"reading", &ScanReport::reading_seconds},   {"repair", &ScanReport::repair_seconds},
-    {"filling", &ScanReport::filling_seconds},   {"decimation", &ScanReport::decimation_seconds},
-    {"ordering", &ScanReport::ordering_seconds}, {"normals", &ScanReport::normals_seconds},
+    {"reading", &ScanReport::reading},   {"repair", &ScanReport::repair},
+    {"filling", &ScanReport::filling},   {"decimation", &ScanReport::decimation},
+    {"ordering", &ScanReport::ordering}, {"normals", &ScanReport::normals},
 };
 
 /// A name within quotes, its own doubled.
@@ -42,15 +42,15 @@ bench::Plot plot(const std::vector<ScanReport>& scans, const char* title,
 
 }  // namespace
 
-double ScanReport::smoothing_seconds() const {
-  double sum = 0;
-  for (const LevelReport& level : levels) sum += level.smoothing_seconds;
+Seconds ScanReport::smoothing() const {
+  Seconds sum;
+  for (const LevelReport& level : levels) sum += level.smoothing;
   return sum;
 }
 
-double ScanReport::remeshing_seconds() const {
-  double sum = 0;
-  for (const LevelReport& level : levels) sum += level.remeshing_seconds;
+Seconds ScanReport::remeshing() const {
+  Seconds sum;
+  for (const LevelReport& level : levels) sum += level.remeshing;
   return sum;
 }
 
@@ -58,7 +58,8 @@ void print(const ScanReport& scan) {
   std::printf("%s: %lld vertices;", scan.name.c_str(),
               static_cast<long long>(scan.scanned_vertices));
   for (const Stretch& stretch : kStretches)
-    if (scan.*stretch.seconds > 0) std::printf(" %s %.3g s", stretch.name, scan.*stretch.seconds);
+    if ((scan.*stretch.seconds).cpu > 0)
+      std::printf(" %s %.3g s", stretch.name, (scan.*stretch.seconds).cpu);
   std::printf("\n%5s %9s %9s %6s %8s %7s %7s %11s %11s %8s %7s %9s %5s %7s %8s %8s\n", "level",
               "vertices", "triangles", "parts", "boundary", "moved", "since 0", "volume", "area",
               "shortest", "split", "collapsed", "torn", "dropped", "remesh s", "smooth s");
@@ -68,16 +69,18 @@ void print(const ScanReport& scan) {
                 static_cast<long long>(r.vertices), static_cast<long long>(r.triangles),
                 static_cast<long long>(r.parts), static_cast<long long>(r.boundary_edges), r.moved,
                 r.moved_from_first, r.volume, r.area, r.shortest_edge);
-    std::printf(
-        " %7lld %9lld %5lld %7lld %8.3f %8.3f\n", static_cast<long long>(r.remeshed.split),
-        static_cast<long long>(r.remeshed.collapsed), static_cast<long long>(r.remeshed.torn),
-        static_cast<long long>(r.remeshed.dropped_parts), r.remeshing_seconds, r.smoothing_seconds);
+    std::printf(" %7lld %9lld %5lld %7lld %8.3f %8.3f\n", static_cast<long long>(r.remeshed.split),
+                static_cast<long long>(r.remeshed.collapsed),
+                static_cast<long long>(r.remeshed.torn),
+                static_cast<long long>(r.remeshed.dropped_parts), r.remeshing.cpu, r.smoothing.cpu);
   }
-  const double smoothing = scan.smoothing_seconds();
-  const double remeshing = scan.remeshing_seconds();
-  std::printf("smoothing %.3g s, remeshing %.3g s, filling and decimation %.3g s: %.0f %%\n\n",
-              smoothing, remeshing, scan.preparation_seconds(),
-              100 * (remeshing + scan.preparation_seconds()) / smoothing);
+  const Seconds smoothing = scan.smoothing();
+  const Seconds remeshing = scan.remeshing();
+  std::printf(
+      "smoothing %.3g s (%.3g s wall), remeshing %.3g s (%.3g s wall), of the smoothing %.0f "
+      "%%\n\n",
+      smoothing.cpu, smoothing.wall, remeshing.cpu, remeshing.wall,
+      100 * remeshing.cpu / smoothing.cpu);
 }
 
 std::string csv(const std::vector<ScanReport>& scans) {
@@ -102,10 +105,13 @@ std::string json(const std::vector<ScanReport>& scans) {
   auto list = nlohmann::json::array();
   for (const ScanReport& scan : scans) {
     nlohmann::json entry = {{"name", scan.name}, {"scanned_vertices", scan.scanned_vertices}};
-    for (const Stretch& stretch : kStretches)
-      entry[std::string(stretch.name) + "_seconds"] = scan.*stretch.seconds;
-    entry["smoothing_seconds"] = scan.smoothing_seconds();
-    entry["remeshing_seconds"] = scan.remeshing_seconds();
+    const auto add = [&entry](const std::string& stretch, const Seconds& seconds) {
+      entry[stretch + "_seconds"] = seconds.wall;
+      entry[stretch + "_cpu_seconds"] = seconds.cpu;
+    };
+    for (const Stretch& stretch : kStretches) add(stretch.name, scan.*stretch.seconds);
+    add("smoothing", scan.smoothing());
+    add("remeshing", scan.remeshing());
     for (const LevelReport& level : scan.levels) {
       nlohmann::json row = nlohmann::json::object();
       for (const Column& column : columns()) {

@@ -12,21 +12,21 @@ namespace semigeo::evolution {
 struct ScanReport {
   std::string name;
   std::int64_t scanned_vertices = 0;  ///< after repair, before holes are filled and decimation
-  double reading_seconds = 0;
-  double repair_seconds = 0;
-  double filling_seconds = 0;
-  double decimation_seconds = 0;
-  double ordering_seconds = 0;
-  double normals_seconds = 0;  ///< of level 0, and all else before the first patch
+  Seconds reading;
+  Seconds repair;
+  Seconds filling;
+  Seconds decimation;
+  Seconds ordering;
+  Seconds normals;  ///< of level 0, and all else before the first patch
   jobs::PreparationResult preparation;
   std::vector<LevelReport> levels;
 
-  double smoothing_seconds() const;
-  double remeshing_seconds() const;
-  double preparation_seconds() const { return filling_seconds + decimation_seconds; }
+  /// Of all levels together.
+  Seconds smoothing() const;
+  Seconds remeshing() const;
 };
 
-/// A table on stdout.
+/// A table on stdout, with CPU seconds.
 void print(const ScanReport& scan);
 /// One row a level.
 std::string csv(const std::vector<ScanReport>& scans);

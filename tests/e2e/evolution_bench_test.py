@@ -13,7 +13,8 @@ from support import SemigeoTest, icosphere, joined, plane, write_ply
 SVG = "{http://www.w3.org/2000/svg}"
 COLUMNS = (
     "vertices,triangles,parts,boundary_edges,moved,moved_from_first,volume,area,mean_edge,"
-    "shortest_edge,split,collapsed,torn,dropped_parts,remeshing_seconds,smoothing_seconds"
+    "shortest_edge,split,collapsed,torn,dropped_parts,remeshing_seconds,remeshing_cpu_seconds,"
+    "smoothing_seconds,smoothing_cpu_seconds"
 ).split(",")
 
 

@@ -3,17 +3,21 @@
 #include <gtest/gtest.h>
 
 #include <string>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 namespace semigeo::engine {
 namespace {
 
 struct Record : Observer {
-  void timed(std::string_view stretch, double seconds) override {
-    stretches.emplace_back(stretch, seconds);
+  void timed(std::string_view stretch, double seconds, double cpu_seconds) override {
+    stretches.push_back({std::string(stretch), seconds, cpu_seconds});
   }
-  std::vector<std::pair<std::string, double>> stretches;
+  struct Stretch {
+    std::string name;
+    double seconds, cpu_seconds;
+  };
+  std::vector<Stretch> stretches;
 };
 
 TEST(Stopwatch, TellsOnceAtTheEndOfItsScope) {
@@ -24,10 +28,13 @@ TEST(Stopwatch, TellsOnceAtTheEndOfItsScope) {
     EXPECT_EQ(record.stretches.size(), 1u);
   }
   ASSERT_EQ(record.stretches.size(), 2u);
-  EXPECT_EQ(record.stretches[0].first, "inner");
-  EXPECT_EQ(record.stretches[1].first, "outer");
-  EXPECT_GE(record.stretches[0].second, 0);
-  EXPECT_GE(record.stretches[1].second, record.stretches[0].second);
+  const auto& [inner, outer] = std::tie(record.stretches[0], record.stretches[1]);
+  EXPECT_EQ(inner.name, "inner");
+  EXPECT_EQ(outer.name, "outer");
+  EXPECT_GE(inner.seconds, 0);
+  EXPECT_GE(outer.seconds, inner.seconds);
+  EXPECT_GE(inner.cpu_seconds, 0);
+  EXPECT_GE(outer.cpu_seconds, inner.cpu_seconds);
 }
 
 }  // namespace
