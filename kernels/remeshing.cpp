@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <numeric>
 #include <utility>
@@ -27,12 +28,16 @@ void gather(std::vector<Value>& values, const std::vector<std::int32_t>& order) 
 template <typename Wanted>
 void find_edges(const LevelMesh& mesh, std::int32_t begin, std::int32_t end,
                 std::vector<std::int32_t>& edges, const Wanted& wanted) {
-  for (std::int32_t f = begin; f < end; ++f)
-    for (int i = 0; i < 3 && mesh.surface.triangles[f][0] != kNone; ++i) {
+  for (std::int32_t f = begin; f < end; ++f) {
+    const auto& t = mesh.surface.triangles[f];
+    if (t[0] == kNone) continue;
+    const std::array<Eigen::Vector3d, 3> p = {mesh.point(t[0]), mesh.point(t[1]), mesh.point(t[2])};
+    for (int i = 0; i < 3; ++i) {
       const std::int32_t h = halfedge(f, i);
       if (mesh.surface.twin[h] > h) continue;  // found from the other side
-      if (wanted(mesh.length2(h))) edges.push_back(h);
+      if (wanted((p[i == 2 ? 0 : i + 1] - p[i]).squaredNorm())) edges.push_back(h);
     }
+  }
 }
 
 }  // namespace
