@@ -131,8 +131,7 @@ std::string json(const std::vector<ScanReport>& scans) {
 
 std::string plots(const std::vector<ScanReport>& scans) {
   const auto area = [](const LevelReport& r) { return r.area; };
-  // A scan without an inside has no curve.
-  const auto volume = [](const LevelReport& r) { return r.volume > 0 ? r.volume : NAN; };
+  const auto volume = [](const LevelReport& r) { return r.volume; };
   const auto parts = [](const LevelReport& r) { return static_cast<double>(r.parts); };
   return bench::svg({plot(scans, "Area", area, true), plot(scans, "Volume", volume, true),
                      plot(scans, "Parts", parts, false)},
