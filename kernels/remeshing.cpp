@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <numeric>
 #include <utility>
@@ -74,12 +75,16 @@ void find_odd_faces(const LevelMesh& mesh, std::int32_t begin, std::int32_t end,
 
 void find_long_edges(const LevelMesh& mesh, std::int32_t begin, std::int32_t end, double length,
                      std::vector<std::int32_t>& edges) {
-  for (std::int32_t f = begin; f < end; ++f)
-    for (int i = 0; i < 3 && mesh.surface.triangles[f][0] != kNone; ++i) {
+  for (std::int32_t f = begin; f < end; ++f) {
+    const auto& t = mesh.surface.triangles[f];
+    if (t[0] == kNone) continue;
+    const std::array<Eigen::Vector3d, 3> p = {mesh.point(t[0]), mesh.point(t[1]), mesh.point(t[2])};
+    for (int i = 0; i < 3; ++i) {
       const std::int32_t h = halfedge(f, i);
       if (mesh.surface.twin[h] > h) continue;  // found from the other side
-      if (mesh.length2(h) > length * length) edges.push_back(h);
+      if ((p[i == 2 ? 0 : i + 1] - p[i]).squaredNorm() > length * length) edges.push_back(h);
     }
+  }
 }
 
 Remesher::Remesher(LevelMesh& mesh, bool curved)

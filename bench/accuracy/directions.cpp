@@ -11,7 +11,7 @@
 
 #include "bench/accuracy/command.hpp"
 #include "bench/accuracy/direction_errors.hpp"
-#include "bench/accuracy/svg_plot.hpp"
+#include "bench/support/svg_plot.hpp"
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "io/scan_reader.hpp"
@@ -21,6 +21,7 @@ namespace semigeo::accuracy {
 namespace {
 
 namespace fs = std::filesystem;
+using bench::Plot;
 
 struct DirectionOptions {
   std::vector<fs::path> meshes;
@@ -156,9 +157,10 @@ void write_plots(const fs::path& stem, const std::vector<Measurement>& measureme
         all.push_back(plot(measurements, quantity, over, statistic.value));
         io::write_file_atomically(
             stem.string() + "_" + quantity.name + "_" + over.name + statistic.suffix + ".svg",
-            svg({all.back()}, 1, "iterations"));
+            bench::svg({all.back()}, 1, "iterations"));
       }
-    io::write_file_atomically(stem.string() + statistic.suffix + ".svg", svg(all, 3, "iterations"));
+    io::write_file_atomically(stem.string() + statistic.suffix + ".svg",
+                              bench::svg(all, 3, "iterations"));
   }
 }
 

@@ -3,27 +3,14 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
-#include <string>
 
 #include "bench/accuracy/command.hpp"
-
-namespace {
-
-/// Examples, kept as the footer, stand before everything else.
-class ExamplesFirst : public CLI::Formatter {
- public:
-  std::string make_description(const CLI::App* app) const override {
-    return app->get_footer() + "\n" + CLI::Formatter::make_description(app) + "\n";
-  }
-  std::string make_footer(const CLI::App*) const override { return ""; }
-};
-
-}  // namespace
+#include "bench/support/examples_first.hpp"
 
 int main(int argc, char** argv) {
   using namespace semigeo::accuracy;
   CLI::App app{"How accurate semigeo's curvature is.", "accuracy"};
-  app.formatter(std::make_shared<ExamplesFirst>());
+  app.formatter(std::make_shared<semigeo::bench::ExamplesFirst>());
   app.footer(
       "Examples:\n"
       "  accuracy analytic                           errors where the curvature is known\n"

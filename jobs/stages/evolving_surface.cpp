@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "engine/stopwatch.hpp"
 #include "jobs/stages/remesh_surface.hpp"
 #include "kernels/evolution.hpp"
 
@@ -275,6 +276,7 @@ std::vector<PartMeasure> EvolvingSurface::restore_size() {
 /// Rids the mesh, already moved, of odd triangles and of parts on which no patch was valid.
 /// result: the parts after it.
 std::vector<PartMeasure> EvolvingSurface::remesh(std::vector<PartMeasure> parts) {
+  const engine::Stopwatch stopwatch(context_.observer, "remeshing");
   std::vector<std::uint8_t> dropped(parts.size());
   std::size_t largest = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {

@@ -1,11 +1,13 @@
 #include "jobs/stages/prepare_surface.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
 
+#include "engine/stopwatch.hpp"
 #include "kernels/decimation.hpp"
 
 namespace semigeo::jobs {
@@ -17,6 +19,7 @@ using kernels::Surface;
 constexpr std::int64_t kPointBlock = 4096;
 
 void fill(PreparedSurface& prepared, std::int64_t max_edges, const engine::RunContext& context) {
+  const engine::Stopwatch stopwatch(context.observer, "filling");
   const Surface& surface = prepared.surface;
   const auto loops = kernels::boundary_loops(surface);
   std::vector<kernels::HolePatch> patches(loops.size());
@@ -32,19 +35,44 @@ void fill(PreparedSurface& prepared, std::int64_t max_edges, const engine::RunCo
   prepared.result.holes = filled.counts;
 }
 
-/// Distances of all points from a surface, block by block.
-kernels::DistanceSummary measure(const kernels::NearestSurface& nearest,
+/// Where to begin a search: nothing farther away than the nearest of the faces round a vertex needs
+/// a look. The margin is for rounding; what is found does not depend on the limit.
+double search_limit(const Surface& surface, std::int32_t vertex, const Eigen::Vector3d& p) {
+  double nearest2 = std::numeric_limits<double>::infinity();
+  const std::int32_t start = surface.outgoing[vertex];
+  std::int32_t h = start;
+  do {
+    const auto& t = surface.triangles[kernels::face_of(h)];
+    const Eigen::Vector3d q = kernels::nearest_on_triangle(p, surface.points[t[0]].cast<double>(),
+                                                           surface.points[t[1]].cast<double>(),
+                                                           surface.points[t[2]].cast<double>());
+    nearest2 = std::min(nearest2, (p - q).squaredNorm());
+    h = surface.ccw(h);
+  } while (h != kernels::kNone && h != start);
+  return 1.001 * std::sqrt(nearest2) + 1e-30;
+}
+
+/// Distances of all vertices before decimation from what is left of them, block by block.
+kernels::DistanceSummary measure(const kernels::DecimatedSurface& decimated,
                                  std::span<const Eigen::Vector3f> points,
                                  const engine::RunContext& context) {
+  const kernels::NearestSurface nearest(decimated.surface);
   const auto count = static_cast<std::int64_t>(points.size());
+  std::vector<std::int32_t> kept(points.size(), kernels::kNone);
+  for (std::size_t v = 0; v < decimated.source_vertex.size(); ++v)
+    kept[decimated.source_vertex[v]] = static_cast<std::int32_t>(v);
   std::vector<kernels::DistanceSummary> blocks((count + kPointBlock - 1) / kPointBlock);
   const auto block_count = static_cast<std::int64_t>(blocks.size());
   context.workers.for_blocks(block_count, 1, [&](IndexRange range) {
-    for (auto b = range.begin; b < range.end; ++b) {
-      const std::int64_t begin = b * kPointBlock;
-      blocks[b] =
-          kernels::distances(nearest, points.subspan(begin, std::min(kPointBlock, count - begin)));
-    }
+    for (auto b = range.begin; b < range.end; ++b)
+      for (auto v = b * kPointBlock; v < std::min((b + 1) * kPointBlock, count); ++v) {
+        const Eigen::Vector3d p = points[v].cast<double>();
+        const double limit = kept[v] == kernels::kNone
+                                 ? std::numeric_limits<double>::infinity()
+                                 : search_limit(decimated.surface, kept[v], p);
+        const double distance = nearest.nearest(p, limit).distance;
+        blocks[b].add({.maximum = distance, .sum = distance, .count = 1});
+      }
   });
   kernels::DistanceSummary sum;
   for (const auto& block : blocks) sum.add(block);
@@ -52,17 +80,20 @@ kernels::DistanceSummary measure(const kernels::NearestSurface& nearest,
 }
 
 /// Marks of the faces of `after` by the nearest face of `before`.
-std::vector<std::uint8_t> nearest_marks(const Surface& after, const Surface& before,
+std::vector<std::uint8_t> nearest_marks(const kernels::DecimatedSurface& after,
+                                        const Surface& before,
                                         const std::vector<std::uint8_t>& marks,
                                         const engine::RunContext& context) {
   const kernels::NearestSurface nearest(before);
-  std::vector<std::uint8_t> result(after.triangles.size());
-  context.workers.for_blocks(after.face_count(), kPointBlock, [&](IndexRange range) {
+  const Surface& surface = after.surface;
+  std::vector<std::uint8_t> result(surface.triangles.size());
+  context.workers.for_blocks(surface.face_count(), kPointBlock, [&](IndexRange range) {
     for (auto f = range.begin; f < range.end; ++f) {
+      const auto& t = surface.triangles[f];
       Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
-      for (const std::int32_t v : after.triangles[f])
-        centroid += after.points[v].cast<double>() / 3;
-      const std::int32_t face = nearest.nearest(centroid).face;
+      for (const std::int32_t v : t) centroid += surface.points[v].cast<double>() / 3;
+      const double limit = search_limit(before, after.source_vertex[t[0]], centroid);
+      const std::int32_t face = nearest.nearest(centroid, limit).face;
       result[f] = face == kernels::kNone ? 0 : marks[face];
     }
   });
@@ -71,6 +102,7 @@ std::vector<std::uint8_t> nearest_marks(const Surface& after, const Surface& bef
 
 void decimate(PreparedSurface& prepared, const PreparationOptions& options,
               const engine::RunContext& context) {
+  const engine::Stopwatch stopwatch(context.observer, "decimation");
   PreparationResult& result = prepared.result;
   if (options.decimate > 0)
     result.tolerance =
@@ -84,16 +116,13 @@ void decimate(PreparedSurface& prepared, const PreparationOptions& options,
        .measure = false});
   result.removed_vertices = decimated.removed_vertices;
   result.removed_faces = decimated.removed_faces;
-  {
-    const kernels::NearestSurface nearest(decimated.surface);
-    result.distance = measure(nearest, prepared.surface.points, context);
-  }
+  result.distance = measure(decimated, prepared.surface.points, context);
   if (!prepared.vertex_filled.empty()) {
     std::vector<std::uint8_t> marks(decimated.source_vertex.size());
     for (std::size_t v = 0; v < marks.size(); ++v)
       marks[v] = prepared.vertex_filled[decimated.source_vertex[v]];
     prepared.face_filled =
-        nearest_marks(decimated.surface, prepared.surface, prepared.face_filled, context);
+        nearest_marks(decimated, prepared.surface, prepared.face_filled, context);
     prepared.vertex_filled = std::move(marks);
   }
   prepared.surface = std::move(decimated.surface);

@@ -7,6 +7,9 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "kernels/gaussian.hpp"
 #include "tests/jobs/evolve_mesh.hpp"
@@ -365,6 +368,28 @@ TEST(EvolvingSurfaceTest, TellsTheObserverOfEveryVertexOfEveryLevel) {
   evolving.advance(true);
   evolving.advance(false);
   EXPECT_EQ(counter.work, 2 * 80 * 36);
+}
+
+TEST(EvolvingSurfaceTest, TellsTheObserverHowLongItRemeshed) {
+  struct Record : engine::Observer {
+    std::vector<std::string> stretches;
+    void timed(std::string_view stretch, double seconds, double cpu_seconds) override {
+      EXPECT_GE(seconds, 0);
+      EXPECT_GE(cpu_seconds, 0);
+      stretches.emplace_back(stretch);
+    }
+  };
+  for (const bool remesh : {true, false}) {
+    Record record;
+    engine::Workers workers(2);
+    const kernels::Surface built = kernels::build_surface(rough_torus()).surface;
+    EvolvingSurface evolving(kernels::reordered(built, kernels::locality_order(built)),
+                             {.remesh = remesh}, {workers, record, {}});
+    evolving.advance(true);
+    evolving.advance(false);
+    EXPECT_EQ(record.stretches,
+              remesh ? std::vector<std::string>{"remeshing"} : std::vector<std::string>{});
+  }
 }
 
 }  // namespace

@@ -99,6 +99,28 @@ TEST(PrepareSurfaceTest, DecimationReachesItsTargetAndKeepsTheMarks) {
   }
 }
 
+TEST(PrepareSurfaceTest, DistancesAndMarksAreThoseOfASearchOverAllFaces) {
+  TriangleMesh mesh = holed_sphere(4);
+  shapes::add_noise(mesh, 0.01, 1);
+  const PreparedSurface before = prepare(mesh, {.fill_holes = 6});
+  const PreparedSurface after = prepare(mesh, {.fill_holes = 6, .decimate = 0.1});
+  ASSERT_GT(after.result.removed_vertices, 100);
+
+  const kernels::NearestSurface left(after.surface);
+  const kernels::DistanceSummary distance = kernels::distances(left, before.surface.points);
+  EXPECT_EQ(after.result.distance.count, distance.count);
+  EXPECT_EQ(after.result.distance.maximum, distance.maximum);
+  EXPECT_EQ(after.result.distance.sum, distance.sum);  // fewer points than a block
+
+  const kernels::NearestSurface all(before.surface);
+  for (std::size_t f = 0; f < after.face_filled.size(); ++f) {
+    Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+    for (const auto v : after.surface.triangles[f])
+      centroid += after.surface.points[v].cast<double>() / 3;
+    EXPECT_EQ(after.face_filled[f], before.face_filled[all.nearest(centroid).face]) << f;
+  }
+}
+
 TEST(PrepareSurfaceTest, EveryNumberOfThreadsGivesTheSame) {
   const PreparationOptions options = {.fill_holes = 10, .decimate = 0.05};
   const PreparedSurface one = prepare(holed_sphere(4), options, 1);

@@ -1,4 +1,4 @@
-#include "bench/accuracy/svg_plot.hpp"
+#include "bench/support/svg_plot.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,12 +6,13 @@
 #include <cstdio>
 #include <limits>
 
-namespace semigeo::accuracy {
+namespace semigeo::bench {
 namespace {
 
 constexpr double kPanelWidth = 340, kPanelHeight = 260;
 constexpr double kLeft = 58, kRight = 12, kTop = 34, kBottom = 46;
-constexpr double kLegendWidth = 104;
+/// Of the legend at least; and about that of one letter of it.
+constexpr double kLegendWidth = 104, kLetterWidth = 6.5;
 /// Above this ratio of largest to smallest a linear axis would hide the lower curves.
 constexpr double kLogRatio = 20;
 
@@ -202,7 +203,11 @@ std::string legend(const Plot& plot, const std::string& title, double x) {
 std::string svg(const std::vector<Plot>& panels, int columns, const std::string& legend_title) {
   const int count = static_cast<int>(panels.size());
   const int rows = (count + columns - 1) / columns;
-  const double width = columns * kPanelWidth + kLegendWidth;
+  std::size_t letters = 0;
+  if (!panels.empty())
+    for (const Series& series : panels[0].series) letters = std::max(letters, series.label.size());
+  const double width = columns * kPanelWidth +
+                       std::max(kLegendWidth, 44 + kLetterWidth * static_cast<double>(letters));
   const double longest = panels.empty() ? 0 : static_cast<double>(panels[0].series.size());
   const double height = std::max(rows * kPanelHeight, kTop + 24 + 18 * longest);
   std::string result = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + number(width) +
@@ -225,4 +230,4 @@ std::string svg(const std::vector<Plot>& panels, int columns, const std::string&
   return result + "</svg>\n";
 }
 
-}  // namespace semigeo::accuracy
+}  // namespace semigeo::bench

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-namespace semigeo::accuracy {
+namespace semigeo::bench {
 
 /// One curve.
 struct Series {
@@ -25,4 +25,4 @@ struct Plot {
 /// factor of 20, those of all panels are logarithmic.
 std::string svg(const std::vector<Plot>& panels, int columns, const std::string& legend_title);
 
-}  // namespace semigeo::accuracy
+}  // namespace semigeo::bench
