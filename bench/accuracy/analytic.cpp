@@ -56,11 +56,12 @@ std::vector<Case> measure(const AnalyticOptions& options) {
           if (std::ranges::count(options.shapes, shape.name) == 0) continue;
           for (const auto kind : {shapes::Tessellation::even, shapes::Tessellation::uneven,
                                   shapes::Tessellation::ragged, shapes::Tessellation::needles}) {
-            const jobs::EvolutionOptions evolution{.curved = surface == "curved",
-                                                   .coordinates = coordinates_of(coordinates),
-                                                   .schedule = options.schedule == "octaves"
-                                                                   ? jobs::Schedule::octaves
-                                                                   : jobs::Schedule::uniform};
+            const jobs::EvolutionOptions evolution{
+                .curved = surface == "curved",
+                .coordinates = coordinates_of(coordinates),
+                .schedule = options.schedule == "octaves" ? jobs::Schedule::octaves
+                                                          : jobs::Schedule::uniform,
+                .remesh = false};  // the truth is known per vertex
             const shapes::AnalyticMesh exact = shapes::tessellate(shape, kind, vertices);
             const double edge = shapes::mean_edge_length(exact.mesh);
             Case c{shape.name,

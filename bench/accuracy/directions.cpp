@@ -51,9 +51,12 @@ void evolve(kernels::TriangleMesh mesh, const DirectionOptions& options, engine:
   kernels::PreparedSurface surface(std::move(mesh), curved);
   if (surface.surface.face_count() == 0) throw std::runtime_error("no face is left after repair");
   engine::Observer observer;
-  jobs::EvolvingSurface evolving(
-      surface.surface, {.curved = curved, .coordinates = coordinates_of(options.coordinates)},
-      {workers, observer, {}});
+  jobs::EvolvingSurface evolving(surface.surface,
+                                 {.curved = curved,
+                                  .coordinates = coordinates_of(options.coordinates),
+                                  .rescale = jobs::Rescale::edges,
+                                  .remesh = false},  // vertices must stay what they are
+                                 {workers, observer, {}});
   const std::set<int> wanted(options.iterations.begin(), options.iterations.end());
   const int last = *wanted.rbegin();
   const double unit = std::exp2(std::round(std::log2(mean_edge_length(surface.surface))));
