@@ -17,6 +17,15 @@ namespace {
 /// again each time would cost the square of their number.
 constexpr int kLargeFan = 64;
 
+bool large_fan(const Surface& surface, std::int32_t v) {
+  std::int32_t h = surface.outgoing[v];
+  for (int faces = 0; faces < kLargeFan; ++faces) {
+    h = surface.ccw(h);
+    if (h == kNone || h == surface.outgoing[v]) return false;
+  }
+  return true;
+}
+
 template <typename Value>
 void gather(std::vector<Value>& values, const std::vector<std::int32_t>& order) {
   if (values.empty()) return;
@@ -200,9 +209,11 @@ void Remesher::remove_edge(std::int32_t edge) {
     }
     case SurfaceEditor::Obstacle::cycle: {
       if (const std::int32_t spoke = spoke_inside(h, check.third); spoke != kNone) {
-        const std::int32_t keeper = surface.origin(spoke);
+        // Of the three faces there one is left, between the vertices of the cycle.
+        const std::int32_t left = face_of(surface.ccw(surface.twin[spoke]));
         absorb(spoke);
-        push_fan(keeper);
+        for (int i = 0; i < 3; ++i) push_edge(halfedge(left, i));
+        push_face(left);
         break;
       }
       const auto covers = editor_.cut_cycle(surface.origin(h), surface.target(h), check.third);
@@ -247,9 +258,7 @@ Eigen::Vector3d Remesher::merged_point(std::int32_t a, std::int32_t b) const {
   const bool a_fixed = mesh_.surface.on_boundary(a);
   const bool b_fixed = mesh_.surface.on_boundary(b);
   if (a_fixed != b_fixed) return a_fixed ? pa : pb;
-  int fan = 0;
-  editor_.each_corner(a, [&](std::int32_t) { ++fan; });
-  if (fan > kLargeFan) return pa;
+  if (large_fan(mesh_.surface, a)) return pa;
   const bool close = (pb - pa).squaredNorm() < shortest2_;
   Eigen::Vector3d best = pa;
   double best_cosine = -2;
@@ -279,9 +288,10 @@ std::int32_t Remesher::spoke_inside(std::int32_t h, std::int32_t third) const {
   return kNone;
 }
 
-/// Makes the target of h one with its origin, which stays where it is.
+/// Makes the ends of h one; the survivor stays where it is.
 void Remesher::absorb(std::int32_t h) {
-  carry_over(mesh_.surface.origin(h), mesh_.surface.target(h));
+  const std::int32_t a = editor_.survivor(h);
+  carry_over(a, mesh_.surface.origin(h) + mesh_.surface.target(h) - a);
   editor_.collapse(h);
   ++counts_.collapsed;
   ++counts_.removed;
@@ -298,8 +308,8 @@ void Remesher::carry_over(std::int32_t a, std::int32_t b) {
 }
 
 void Remesher::merge(std::int32_t h) {
-  const std::int32_t a = mesh_.surface.origin(h);
-  const std::int32_t b = mesh_.surface.target(h);
+  const std::int32_t a = editor_.survivor(h);
+  const std::int32_t b = mesh_.surface.origin(h) + mesh_.surface.target(h) - a;
   const Eigen::Vector3f p = merged_point(a, b).cast<float>();
   const bool stays = p == mesh_.points[a].head<3>();
   std::vector<std::int32_t> joining;

@@ -9,48 +9,41 @@ SurfaceEditor::SurfaceEditor(Surface& surface)
       face_count_(surface.face_count()),
       vertex_count_(static_cast<std::int64_t>(surface.outgoing.size())) {}
 
-/// Whether an edge joins a and b: both fans are walked side by side, until the smaller one ends.
-bool SurfaceEditor::joined(std::int32_t a, std::int32_t b) const {
+/// The edge that joins a and b, as the half-edge in either direction, or kNone: both fans are
+/// walked side by side, until the smaller one ends.
+std::int32_t SurfaceEditor::between(std::int32_t a, std::int32_t b) const {
   const std::array<std::int32_t, 2> start = {surface_.outgoing[a], surface_.outgoing[b]};
   std::array<std::int32_t, 2> h = start;
   while (true)
     for (int side = 0; side < 2; ++side) {
       const std::int32_t sought = side == 0 ? b : a;
-      if (surface_.target(h[side]) == sought || surface_.origin(prev(h[side])) == sought)
-        return true;
+      if (surface_.target(h[side]) == sought) return h[side];
+      if (surface_.origin(prev(h[side])) == sought) return prev(h[side]);
       h[side] = surface_.ccw(h[side]);
-      if (h[side] == kNone || h[side] == start[side]) return false;
+      if (h[side] == kNone || h[side] == start[side]) return kNone;
     }
 }
 
-/// The half-edge from one vertex to another; if there is none the opposite one, or kNone.
-std::int32_t SurfaceEditor::find(std::int32_t from, std::int32_t to) const {
-  std::int32_t found = kNone;
-  each_corner(from, [&](std::int32_t h) {
-    if (surface_.target(h) == to) found = h;
-    const std::int32_t last = prev(h);
-    if (surface_.twin[last] == kNone && surface_.origin(last) == to) found = last;
-  });
-  return found;
-}
-
-SurfaceEditor::Corners SurfaceEditor::corners_of(std::int32_t v) const {
-  Corners corners;
-  each_corner(v, [&](std::int32_t h) { corners.push_back(h); });
-  return corners;
-}
-
-std::int32_t SurfaceEditor::from_larger_fan(std::int32_t h) const {
-  const std::int32_t t = surface_.twin[h];
-  if (t == kNone) return h;
-  const std::array<std::int32_t, 2> start = {surface_.outgoing[surface_.origin(h)],
-                                             surface_.outgoing[surface_.target(h)]};
+/// Whether the fan of a has at least as many faces as that of b. Walks the smaller one.
+bool SurfaceEditor::larger_fan(std::int32_t a, std::int32_t b) const {
+  const std::array<std::int32_t, 2> start = {surface_.outgoing[a], surface_.outgoing[b]};
   std::array<std::int32_t, 2> at = start;
   while (true)
     for (const int side : {1, 0}) {
       at[side] = surface_.ccw(at[side]);
-      if (at[side] == kNone || at[side] == start[side]) return side == 1 ? h : t;
+      if (at[side] == kNone || at[side] == start[side]) return side == 1;
     }
+}
+
+std::int32_t SurfaceEditor::from_larger_fan(std::int32_t h) const {
+  const std::int32_t t = surface_.twin[h];
+  return t == kNone || larger_fan(surface_.origin(h), surface_.target(h)) ? h : t;
+}
+
+std::int32_t SurfaceEditor::survivor(std::int32_t h) const {
+  const std::int32_t a = surface_.origin(h);
+  const std::int32_t b = surface_.target(h);
+  return surface_.twin[h] != kNone || larger_fan(a, b) ? a : b;
 }
 
 SurfaceEditor::Collapse SurfaceEditor::may_collapse(std::int32_t h) const {
@@ -73,11 +66,12 @@ SurfaceEditor::Collapse SurfaceEditor::may_collapse(std::int32_t h) const {
     if (same_face(next(h), prev(t)) && same_face(prev(h), next(t))) return {Obstacle::part, kNone};
   }
   Collapse result;
+  const std::int32_t kept = survivor(h);
   const auto examine = [&](std::int32_t x) {
-    if (x == a || x == c || x == d || result.obstacle != Obstacle::none) return;
-    if (joined(x, a)) result = {Obstacle::cycle, x};
+    if (x == kept || x == c || x == d || result.obstacle != Obstacle::none) return;
+    if (between(x, kept) != kNone) result = {Obstacle::cycle, x};
   };
-  each_corner(b, [&](std::int32_t g) {
+  each_corner(kept == a ? b : a, [&](std::int32_t g) {
     examine(surface_.target(g));
     if (surface_.twin[prev(g)] == kNone) examine(surface_.origin(prev(g)));
   });
@@ -98,16 +92,6 @@ std::int32_t SurfaceEditor::fold(std::int32_t gone, std::int32_t into, std::int3
   if (outgoing == gone) outgoing = from != kNone ? from : next(into);
   unite(into, from);
   return into != kNone ? into : from != kNone ? next(from) : kNone;
-}
-
-/// The half-edge with which the fan of an origin begins.
-std::int32_t SurfaceEditor::first_of_fan(std::int32_t any) const {
-  std::int32_t h = any;
-  while (surface_.twin[h] != kNone) {
-    h = next(surface_.twin[h]);
-    if (h == any) break;
-  }
-  return h;
 }
 
 void SurfaceEditor::remove_face(std::int32_t f) {
@@ -139,10 +123,15 @@ std::int32_t SurfaceEditor::add_vertex(const Birth& birth) {
 
 void SurfaceEditor::collapse(std::int32_t h) {
   const std::int32_t t = surface_.twin[h];
-  const std::int32_t a = surface_.origin(h);
-  const std::int32_t b = surface_.target(h);
-  const bool boundary = surface_.on_boundary(a) || surface_.on_boundary(b);
-  for (const std::int32_t g : corners_of(b)) surface_.triangles[face_of(g)][corner_of(g)] = a;
+  const std::int32_t kept = survivor(h);
+  const std::int32_t gone = kept == surface_.origin(h) ? surface_.target(h) : surface_.origin(h);
+  const std::int32_t first = first_after_collapse(h);
+  std::int32_t corner = surface_.outgoing[gone];
+  const std::int32_t start = corner;
+  do {
+    surface_.triangles[face_of(corner)][corner_of(corner)] = kept;
+    corner = surface_.ccw(corner);
+  } while (corner != kNone && corner != start);
 
   // Face (a, b, c), and (b, a, d) on the other side.
   std::int32_t left = fold(prev(h), surface_.twin[prev(h)], surface_.twin[next(h)]);
@@ -152,14 +141,28 @@ void SurfaceEditor::collapse(std::int32_t h) {
     remove_face(face_of(t));
   }
   remove_face(face_of(h));
-  surface_.outgoing[b] = kNone;
-  surface_.outgoing[a] = boundary ? first_of_fan(left) : left;
+  surface_.outgoing[gone] = kNone;
+  surface_.outgoing[kept] = first != kNone ? first : left;
   --vertex_count_;
+}
+
+/// The half-edge with which the fan of the survivor will begin if that lies on a boundary, else
+/// kNone. Nothing is walked: the fan may be large.
+std::int32_t SurfaceEditor::first_after_collapse(std::int32_t h) const {
+  const std::int32_t t = surface_.twin[h];
+  // On a boundary h itself is the first of its origin, and goes.
+  std::int32_t first = surface_.outgoing[surface_.target(h)];
+  if (surface_.twin[first] != kNone) first = surface_.outgoing[surface_.origin(h)];
+  if (surface_.twin[first] != kNone) return kNone;
+  // The edge closes up with that of the face's other side.
+  if (first == next(h)) return surface_.twin[prev(h)];
+  if (t != kNone && first == next(t)) return surface_.twin[prev(t)];
+  return first;
 }
 
 bool SurfaceEditor::may_flip(std::int32_t h) const {
   const std::int32_t t = surface_.twin[h];
-  return t != kNone && !joined(surface_.origin(prev(h)), surface_.origin(prev(t)));
+  return t != kNone && between(surface_.origin(prev(h)), surface_.origin(prev(t))) == kNone;
 }
 
 std::int32_t SurfaceEditor::flip(std::int32_t h) {
@@ -189,42 +192,49 @@ std::int32_t SurfaceEditor::flip(std::int32_t h) {
   return halfedge(f, 1);
 }
 
-/// Gives every fan but the first among the corners of v a copy of the vertex.
-void SurfaceEditor::separate_fans(std::int32_t v, Corners corners) {
-  std::sort(corners.begin(), corners.end());
-  std::vector<bool> seen(corners.size(), false);
-  bool first = true;
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    if (seen[k]) continue;
-    const std::int32_t vertex = first ? v : add_vertex({v, kNone});
-    first = false;
-    const std::int32_t start = first_of_fan(corners[k]);
-    surface_.outgoing[vertex] = start;
-    std::int32_t h = start;
-    do {
-      const auto at = std::lower_bound(corners.begin(), corners.end(), h);
-      seen[at - corners.begin()] = true;
-      surface_.triangles[face_of(h)][corner_of(h)] = vertex;
-      h = surface_.ccw(h);
-    } while (h != kNone && h != start);
+/// A vertex has come to have two fans: the smaller one gets a copy of it. `starts` lie in the fans,
+/// at least one in each; if a fan is open, the half-edge with which it begins is among them.
+void SurfaceEditor::separate_fans(std::int32_t v, std::span<const std::int32_t> starts) {
+  std::vector<std::int32_t> at(starts.begin(), starts.end());
+  const auto begins = [this](std::int32_t h) { return surface_.twin[h] == kNone; };
+  // Side by side, until one has been all the way round.
+  std::size_t smaller = 0;
+  for (bool found = false; !found;)
+    for (std::size_t k = 0; k < starts.size() && !found; ++k) {
+      if (at[k] == kNone) continue;
+      at[k] = surface_.ccw(at[k]);
+      found = at[k] == starts[k] || (at[k] == kNone && begins(starts[k]));
+      smaller = k;
+    }
+  const std::int32_t copy = add_vertex({v, kNone});
+  surface_.outgoing[copy] = starts[smaller];
+  std::int32_t h = starts[smaller];
+  do {
+    surface_.triangles[face_of(h)][corner_of(h)] = copy;
+    h = surface_.ccw(h);
+  } while (h != kNone && h != starts[smaller]);
+  bool open = false;
+  for (const std::int32_t start : starts) {
+    if (surface_.origin(start) != v || open) continue;
+    surface_.outgoing[v] = start;
+    open = begins(start);
   }
 }
 
 std::array<std::int32_t, 2> SurfaceEditor::cut_cycle(std::int32_t a, std::int32_t b,
                                                      std::int32_t c) {
   const std::array<std::int32_t, 3> cycle = {a, b, c};
-  std::array<Corners, 3> corners;
   // Half-edges along the cycle, and those against it.
   std::array<std::array<std::int32_t, 3>, 2> rim;
   for (int i = 0; i < 3; ++i) {
-    corners[i] = corners_of(cycle[i]);
-    const std::int32_t h = find(cycle[i], cycle[(i + 1) % 3]);
+    const std::int32_t h = between(cycle[i], cycle[(i + 1) % 3]);
     const std::int32_t t = surface_.twin[h];
     const bool along = surface_.origin(h) == cycle[i];
     rim[0][i] = along ? h : t;
     rim[1][i] = along ? t : h;
   }
   std::array<std::int32_t, 2> cover = {kNone, kNone};
+  std::array<std::array<std::int32_t, 2>, 3> corner;  // of the covers, at each vertex
   for (int side = 0; side < 2; ++side) {
     if (rim[side] == std::array<std::int32_t, 3>{kNone, kNone, kNone}) continue;
     // The cover of one side runs as the rim of the other: corner i of the second leaves cycle[i].
@@ -233,23 +243,28 @@ std::array<std::int32_t, 2> SurfaceEditor::cut_cycle(std::int32_t a, std::int32_
     for (int k = 0; k < 3; ++k) {
       const std::int32_t h = halfedge(cover[side], k);
       const int edge = side == 0 ? order[(k + 1) % 3] : order[k];
-      corners[order[k]].push_back(h);
+      corner[order[k]][side] = h;
       unite(h, rim[side][edge]);
     }
   }
-  for (int i = 0; i < 3; ++i) separate_fans(cycle[i], std::move(corners[i]));
+  if (cover[0] == kNone || cover[1] == kNone) return cover;  // a hole closed, no fan in two
+  for (int i = 0; i < 3; ++i) {
+    // An open fan begins where it did, or with the cover's own edge.
+    const std::int32_t was = surface_.outgoing[cycle[i]];
+    const std::array starts = {corner[i][0], corner[i][1], was};
+    separate_fans(cycle[i], std::span(starts).first(surface_.twin[was] == kNone ? 3 : 2));
+  }
   return cover;
 }
 
 void SurfaceEditor::cut_chord(std::int32_t h) {
+  const std::int32_t t = surface_.twin[h];
   const std::int32_t a = surface_.origin(h);
   const std::int32_t b = surface_.target(h);
-  Corners at_a = corners_of(a);
-  Corners at_b = corners_of(b);
-  surface_.twin[surface_.twin[h]] = kNone;
+  surface_.twin[t] = kNone;
   surface_.twin[h] = kNone;
-  separate_fans(a, std::move(at_a));
-  separate_fans(b, std::move(at_b));
+  separate_fans(a, std::array{surface_.outgoing[a], h});
+  separate_fans(b, std::array{surface_.outgoing[b], t});
 }
 
 std::int32_t SurfaceEditor::split(std::int32_t h) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "kernels/surface.hpp"
@@ -48,7 +49,11 @@ class SurfaceEditor {
   /// The half-edge of the same edge whose origin has the larger fan; h itself on a boundary.
   std::int32_t from_larger_fan(std::int32_t h) const;
 
-  /// Makes target(h) one with origin(h), which stays. `may_collapse` must allow it.
+  /// Which end stays when half-edge h collapses: its origin; on a boundary, where h has no opposite
+  /// to choose, the end with the larger fan.
+  std::int32_t survivor(std::int32_t h) const;
+
+  /// Makes the ends of h one, at `survivor`. `may_collapse` must allow it.
   void collapse(std::int32_t h);
 
   /// Whether the edge of half-edge h may be turned to the other diagonal of its two faces: it has
@@ -87,18 +92,15 @@ class SurfaceEditor {
   }
 
  private:
-  using Corners = std::vector<std::int32_t>;
-
-  bool joined(std::int32_t a, std::int32_t b) const;
-  std::int32_t find(std::int32_t from, std::int32_t to) const;
-  Corners corners_of(std::int32_t v) const;
+  bool larger_fan(std::int32_t a, std::int32_t b) const;
+  std::int32_t between(std::int32_t a, std::int32_t b) const;
   void unite(std::int32_t h, std::int32_t other);
   std::int32_t fold(std::int32_t gone, std::int32_t into, std::int32_t from);
-  std::int32_t first_of_fan(std::int32_t any) const;
+  std::int32_t first_after_collapse(std::int32_t h) const;
   void remove_face(std::int32_t f);
   std::int32_t add_face(const std::array<std::int32_t, 3>& corners);
   std::int32_t add_vertex(const Birth& birth);
-  void separate_fans(std::int32_t v, Corners corners);
+  void separate_fans(std::int32_t v, std::span<const std::int32_t> starts);
 
   Surface& surface_;
   std::vector<std::int32_t> free_faces_;
