@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <numeric>
 #include <utility>
@@ -16,6 +17,8 @@ namespace {
 /// A vertex with more faces stays where it is when another joins it: to look at all of its edges
 /// again each time would cost the square of their number.
 constexpr int kLargeFan = 64;
+/// Sides of what is left of a surface that has vanished, in shortest sides.
+constexpr double kRemnantEdge = 10;
 
 bool large_fan(const Surface& surface, std::int32_t v) {
   std::int32_t h = surface.outgoing[v];
@@ -153,6 +156,27 @@ void Remesher::remove_short_edges() {
   }
 }
 
+/// If the triangle or tetrahedron of h is all that is left, makes a regular one of it.
+bool Remesher::keep_remnant(std::int32_t h) {
+  const Surface& surface = mesh_.surface;
+  const std::int32_t t = surface.twin[h];
+  if (face_count() != (t == kNone ? 1 : 4)) return false;
+  const std::array<std::int32_t, 4> corners = {surface.origin(h), surface.target(h),
+                                               surface.origin(prev(h)),
+                                               t == kNone ? kNone : surface.origin(prev(t))};
+  const int count = t == kNone ? 3 : 4;
+  // Every other corner of a cube of this half side; the first three anticlockwise from outside.
+  const double a = kRemnantEdge * std::sqrt(shortest2_ / 8);
+  const Eigen::Vector3d regular[] = {{a, a, a}, {-a, a, -a}, {-a, -a, a}, {a, -a, -a}};
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+  for (int i = 0; i < count; ++i) shift += (mesh_.point(corners[i]) - regular[i]) / count;
+  for (int i = 0; i < count; ++i) {
+    mesh_.points[corners[i]].head<3>() = (regular[i] + shift).cast<float>();
+    mesh_.normals[corners[i]] = regular[i].normalized().cast<float>();
+  }
+  return true;
+}
+
 /// Whether the two faces of an edge would be less flat with the other diagonal between them.
 bool Remesher::flip_is_better(std::int32_t h) const {
   const std::int32_t t = mesh_.surface.twin[h];
@@ -195,7 +219,7 @@ void Remesher::remove_edge(std::int32_t edge) {
       merge(h);
       break;
     case SurfaceEditor::Obstacle::part:
-      drop_part(face_of(h));
+      if (!keep_remnant(h)) drop_part(face_of(h));
       break;
     case SurfaceEditor::Obstacle::chord: {
       const std::int32_t t = surface.twin[h];

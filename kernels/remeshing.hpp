@@ -72,7 +72,9 @@ class Remesher {
   /// Short sides are collapsed, the shortest first. Then a flat triangle has its longest side
   /// flipped, if that makes the lesser height of the two faces greater, or its shortest collapsed.
   /// Where an edge closes a neck or a handle (three edges that bound no face), that is cut through
-  /// and both ends are covered; a strip is cut; a triangle or a tetrahedron is dropped.
+  /// and both ends are covered; a strip is cut; a triangle or a tetrahedron is
+  /// dropped. The last one stays, made regular with sides of 10 `shortest`: there is always a
+  /// surface.
   void remove_odd(std::span<const std::int32_t> faces, double shortest);
 
   /// Halves edges longer than `longest`, the longest first, until there are `faces` faces or
@@ -104,6 +106,7 @@ class Remesher {
   void remove_short_edges();
   void remove_flat_face(std::int32_t f);
   void remove_edge(std::int32_t h);
+  bool keep_remnant(std::int32_t h);
   bool flip_is_better(std::int32_t h) const;
   void merge(std::int32_t h);
   void absorb(std::int32_t h);

@@ -136,7 +136,7 @@ ScanReport measure(const Source& source, const Options& options, engine::Workers
   });
   report.normals = clock.body();
   Seconds remeshing;
-  for (int k = 0; k <= options.levels && !evolving->vanished(); ++k) {
+  for (int k = 0; k <= options.levels; ++k) {
     const jobs::LevelFields fields =
         clock.time([&] { return evolving->advance(k < options.levels); });
     report.levels.push_back(meter.measure(fields, context));

@@ -129,6 +129,7 @@ void print_json(const std::vector<PlannedJob>& plan, const std::vector<JobOutcom
       scan["repairs"] = nlohmann::json::parse(to_json(outcome.result->repairs));
       scan["preparation"] =
           nlohmann::json::parse(to_json(outcome.result->preparation, parameters.preparation));
+      scan["vanished"] = outcome.result->vanished;
       scan["remeshing"] = nlohmann::json::parse(to_json(outcome.result->remeshed));
     }
     scans.push_back(std::move(scan));
@@ -169,7 +170,7 @@ std::string in_words(const PreparationResult& preparation) {
 }
 
 /// What became of a surface on its way through the levels, if it is worth a word.
-std::string in_words(const SurfaceJobResult& result, int levels) {
+std::string in_words(const SurfaceJobResult& result) {
   std::string text;
   const auto add = [&text](std::int64_t count, const char* one, const char* more) {
     if (count == 0) return;
@@ -177,16 +178,16 @@ std::string in_words(const SurfaceJobResult& result, int levels) {
   };
   add(result.remeshed.torn, "neck torn", "necks torn");
   add(result.remeshed.dropped_parts, "part lost", "parts lost");
-  if (result.levels <= levels)
-    text += (text.empty() ? "" : "; ") + std::string("nothing is left after level ") +
-            std::to_string(result.levels - 1);
+  if (result.vanished)
+    text +=
+        (text.empty() ? "" : "; ") + std::string("too thin for so many levels: it has vanished");
   return text;
 }
 
 /// One line a scan whose file had to be repaired, one that was prepared, one that fell into parts;
 /// then the failures; then the totals.
 void print_text(const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,
-                int levels, const RunSummary& summary) {
+                const RunSummary& summary) {
   for (std::size_t i = 0; i < plan.size(); ++i) {
     if (!outcomes[i].result || outcomes[i].result->repairs == kernels::SurfaceRepairs{}) continue;
     std::string changes;
@@ -207,7 +208,7 @@ void print_text(const std::vector<PlannedJob>& plan, const std::vector<JobOutcom
   }
   for (std::size_t i = 0; i < plan.size(); ++i) {
     if (!outcomes[i].result) continue;
-    const std::string words = in_words(*outcomes[i].result, levels);
+    const std::string words = in_words(*outcomes[i].result);
     if (!words.empty()) std::printf("evolved: %s: %s\n", plan[i].job.name.c_str(), words.c_str());
   }
   for (const JobOutcome& outcome : outcomes)
@@ -286,7 +287,7 @@ int run(const RunOptions& options, const std::string& effective_config) {
   if (options.json) {
     print_json(plan, outcomes, options.config.surface, summary);
   } else {
-    print_text(plan, outcomes, options.config.surface.levels, summary);
+    print_text(plan, outcomes, summary);
   }
   return summary.failed == 0 ? kAllDone : kSomeFailed;
 }

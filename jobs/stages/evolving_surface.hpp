@@ -92,12 +92,11 @@ class EvolvingSurface {
   /// Curvature of the current level; if `move`, the surface is then smoothed by the same patches,
   /// if so wanted each part is rescaled about its centroid and the mesh rid of odd triangles and of
   /// parts on which no patch was valid - but for the largest part -, and becomes the next level.
+  /// A surface that collapses altogether leaves a triangle or a tetrahedron in its place.
   /// Results do not depend on the number of threads. Source: thesis 5.1, 5.3 - 5.6.
   LevelFields advance(bool move);
 
   std::int64_t vertex_count() const { return mesh_.vertex_count(); }
-  /// Nothing is left: all of it has collapsed.
-  bool vanished() const { return vertex_count() == 0; }
 
  private:
   kernels::SampledSurface sampled() const;

@@ -158,31 +158,27 @@ io::LevelAttributes attributes_of(const LevelFields& fields, int iteration) {
           .dropped_parts = fields.remeshed.dropped_parts};
 }
 
-/// What a run tells of all levels together.
-struct LevelsWritten {
-  std::int64_t levels = 0;
-  kernels::RemeshCounts remeshed;
-};
+/// A triangle or a tetrahedron, which evolution leaves where a surface has vanished.
+bool is_remnant(const EvolvingSurface& surface) {
+  return surface.vertex_count() <= 4;
+}
 
 /// Evolves and writes all levels: pass k + 1 runs beside encoding and writing of level k.
 ///
 ///   pass 0 ──► pass 1 ──► pass 2 ──► ...
 ///     └► encode 0 ─► write 0 ─► (pass 2)      at most two levels of fields are in memory
 ///          └► encode 1 ─► write 1 ─► ...
-///
-/// Ends early if the surface vanishes.
-LevelsWritten write_levels(EvolvingSurface& surface, const SurfaceParameters& parameters,
-                           bool filled, io::DatasetWriter& writer,
-                           const engine::RunContext& context) {
+kernels::RemeshCounts write_levels(EvolvingSurface& surface, const SurfaceParameters& parameters,
+                                   bool filled, io::DatasetWriter& writer,
+                                   const engine::RunContext& context) {
   struct Level {
     std::unique_ptr<LevelFields> fields;
-    bool exists = false;
     kernels::RemeshCounts remeshed;
     io::LevelAttributes attributes;
     std::optional<io::EncodedConnectivity> connectivity;
     io::EncodedFields encoded;
   };
-  LevelsWritten written;
+  kernels::RemeshCounts remeshed;
   std::vector<Level> levels(parameters.levels + 1);
   const auto cost = static_cast<double>(surface.vertex_count());
   engine::TaskGraph graph;
@@ -196,15 +192,12 @@ LevelsWritten write_levels(EvolvingSurface& surface, const SurfaceParameters& pa
     pass.push_back(graph.add(
         "pass " + name, after,
         [&surface, &level, last = k == parameters.levels] {
-          if (surface.vanished()) return;
-          level.exists = true;
           level.fields = std::make_unique<LevelFields>(surface.advance(!last));
         },
         cost));
     const auto encode = graph.add(
         "encode " + name, {pass[k]},
         [&context, &parameters, &level, k, filled] {
-          if (!level.exists) return;
           const LevelFields& fields = *level.fields;
           ParallelEncoder encoder(context.workers, parameters.compression);
           if (fields.connectivity)
@@ -219,19 +212,17 @@ LevelsWritten write_levels(EvolvingSurface& surface, const SurfaceParameters& pa
     if (k >= 1) after.push_back(write[k - 1]);
     write.push_back(graph.add(
         "write " + name, after,
-        [&writer, &level, &written] {
-          if (!level.exists) return;
+        [&writer, &level, &remeshed] {
           if (level.connectivity) writer.write_connectivity(*level.connectivity);
           writer.write_level(level.attributes, level.encoded);
-          ++written.levels;
-          written.remeshed += level.remeshed;
+          remeshed += level.remeshed;
           level.connectivity.reset();
           level.encoded = {};
         },
         cost / 20));
   }
   rethrow_first(graph.run(context));
-  return written;
+  return remeshed;
 }
 
 }  // namespace
@@ -284,6 +275,7 @@ SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters&
     repairs["faces_skipped"] = scan.faces_skipped;
     repairs["bytes_after_end"] = scan.bytes_after_end;
     header.repairs_json = repairs.dump();
+    result.levels = parameters.levels + 1;
     header.origin = {built.origin.x(), built.origin.y(), built.origin.z()};
 
     writer = std::make_unique<io::DatasetWriter>(job.output, header, parameters.compression);
@@ -300,9 +292,8 @@ SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters&
   }
   const bool filled = !origins.face_filled.empty();
   EvolvingSurface evolving(std::move(surface), parameters.evolution, context, std::move(origins));
-  const LevelsWritten written = write_levels(evolving, parameters, filled, *writer, context);
-  result.levels = written.levels;
-  result.remeshed = written.remeshed;
+  result.remeshed = write_levels(evolving, parameters, filled, *writer, context);
+  result.vanished = is_remnant(evolving) && result.vertices > evolving.vertex_count();
   writer->finish();
   return result;
 }

@@ -18,10 +18,11 @@ struct SurfaceJobResult {
   std::int64_t vertices = 0;
   std::int64_t triangles = 0;
   std::int32_t parts = 0;
-  std::int64_t levels = 0;  ///< written; fewer than asked for if the surface vanished
+  std::int64_t levels = 0;
   kernels::SurfaceRepairs repairs;
   PreparationResult preparation;
   kernels::RemeshCounts remeshed;  ///< of all levels together
+  bool vanished = false;           ///< the last level is but a triangle or a tetrahedron
 };
 
 /// Counts as JSON with sorted keys.

@@ -147,6 +147,7 @@ TEST(EvolutionTheoremsTest, StaysInItsConvexHull_Theorem2) {
           evolve_mesh(mesh, 15, {.curved = curved, .rescale = Rescale::none});
       const std::vector<LevelShape> levels = level_shapes(evolved);
       for (std::size_t k = 1; k < levels.size(); ++k) {
+        if (levels[k].mesh.points.size() <= 4) break;  // a mark where it has vanished
         const double most = curved ? 0.01 * evolved.levels[0].mean_edge_length : 0;
         for (const Vector3d& direction : shapes::icosphere(2).points)
           EXPECT_LE(reach(levels[k].mesh.points, direction),

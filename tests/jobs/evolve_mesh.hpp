@@ -29,7 +29,7 @@ void put_in_order(std::vector<Value>& values, const std::vector<std::int32_t>& o
   values = std::move(rows);
 }
 
-/// Level 0 and `smoothings` more, or as many as there are before the surface vanishes.
+/// Level 0 and `smoothings` more.
 inline EvolvedMesh evolve_mesh(kernels::TriangleMesh mesh, int smoothings,
                                const EvolutionOptions& options = {}, int threads = 2) {
   engine::Workers workers(threads);
@@ -39,7 +39,7 @@ inline EvolvedMesh evolve_mesh(kernels::TriangleMesh mesh, int smoothings,
   const auto order = kernels::locality_order(result.surface);
   EvolvingSurface evolving(kernels::reordered(result.surface, order), options,
                            {workers, observer, {}}, {order, {}, {}});
-  for (int k = 0; k <= smoothings && !evolving.vanished(); ++k) {
+  for (int k = 0; k <= smoothings; ++k) {
     LevelFields fields = evolving.advance(k < smoothings);
     const std::vector<std::int32_t>& rows = *fields.stored_order;
     put_in_order(fields.points, rows);

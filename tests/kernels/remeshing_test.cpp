@@ -304,8 +304,8 @@ TEST(RemeshingTest, AWhiskerDissolves) {
   LevelMesh mesh = level_mesh(whisker);
   const RemeshCounts counts = remove_odd_faces(mesh, 0.05);
   expect_sound(mesh);
-  EXPECT_EQ(mesh.vertex_count(), 0);
-  EXPECT_EQ(counts.dropped_parts, 1 + counts.torn);
+  EXPECT_EQ(mesh.vertex_count(), 4);
+  EXPECT_EQ(counts.dropped_parts, counts.torn);
 }
 
 TEST(RemeshingTest, AVertexInsideATriangleOfShortEdgesGoesWithoutACut) {
@@ -326,13 +326,35 @@ TEST(RemeshingTest, AVertexInsideATriangleOfShortEdgesGoesWithoutACut) {
   EXPECT_EQ(euler_characteristic(mesh.surface), 2);
 }
 
-TEST(RemeshingTest, WhatIsTooSmallForATetrahedronIsDropped) {
-  LevelMesh mesh = level_mesh(shapes::icosphere(2, 0.01));
+TEST(RemeshingTest, WhatCollapsesIsDroppedButForTheLast) {
+  TriangleMesh two = shapes::icosphere(2, 0.01);
+  const auto n = static_cast<std::int32_t>(two.points.size());
+  for (const auto& p : shapes::icosphere(2, 0.01).points)
+    two.points.push_back(p + Eigen::Vector3d(5, 0, 0));
+  for (const auto& t : shapes::icosphere(2, 0.01).triangles)
+    two.triangles.push_back({t[0] + n, t[1] + n, t[2] + n});
+  LevelMesh mesh = level_mesh(two);
   const RemeshCounts counts = remove_odd_faces(mesh, 1);
-  EXPECT_EQ(mesh.vertex_count(), 0);
-  EXPECT_EQ(mesh.surface.part_count, 0);
+  expect_sound(mesh);
   EXPECT_EQ(counts.dropped_parts, 1);
-  EXPECT_EQ(counts.removed, 162);
+  EXPECT_EQ(counts.removed, 2 * 162 - 4);
+  // A regular tetrahedron where the last one was, its faces outwards.
+  ASSERT_EQ(mesh.vertex_count(), 4);
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (std::int32_t v = 0; v < 4; ++v) centre += mesh.point(v) / 4;
+  EXPECT_LT(std::min(centre.norm(), (centre - Eigen::Vector3d(5, 0, 0)).norm()), 0.01);
+  for (std::int32_t f = 0; f < 4; ++f) {
+    const auto& t = mesh.surface.triangles[f];
+    const Eigen::Vector3d a = mesh.point(t[0]);
+    EXPECT_GT((mesh.point(t[1]) - a).cross(mesh.point(t[2]) - a).dot(a - centre), 0);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(std::sqrt(mesh.length2(halfedge(f, i))), 10, 1e-5);
+  }
+}
+
+TEST(RemeshingTest, OfALastTriangleATriangleStays) {
+  LevelMesh mesh = level_mesh({{{0, 0, 0}, {1, 0, 0}, {0.5, 1e-9, 0}}, {{0, 1, 2}}});
+  EXPECT_EQ(remove_odd_faces(mesh, 0.1), RemeshCounts{});
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(std::sqrt(mesh.length2(i)), 1, 1e-6);
 }
 
 TEST(RemeshingTest, RefiningHalvesTheLongestEdgesOntoTheSurface) {
