@@ -39,7 +39,7 @@ double mean_edge(const kernels::LevelMesh& mesh) {
   return sum / (3 * static_cast<double>(mesh.surface.face_count()));
 }
 
-/// Collapses what is shorter than `shortest` mean edge lengths; if `refine`, splits the longest
+/// Removes what is below `shortest` mean edge lengths; if `refine`, splits the longest
 /// edges until there are as many faces as before.
 void remesh(benchmark::State& state, double shortest, bool refine) {
   const kernels::LevelMesh rough = rough_sphere(0.3);
@@ -50,12 +50,12 @@ void remesh(benchmark::State& state, double shortest, bool refine) {
     state.PauseTiming();
     kernels::LevelMesh mesh = rough;
     state.ResumeTiming();
-    std::vector<std::int32_t> edges;
-    kernels::find_short_edges(mesh, 0, faces, shortest * edge, edges);
+    std::vector<std::int32_t> odd;
+    kernels::find_odd_faces(mesh, 0, faces, shortest * edge, odd);
     kernels::Remesher remesher(mesh, true);
-    remesher.collapse(edges, shortest * edge);
+    remesher.remove_odd(odd, shortest * edge);
     if (refine) {
-      edges.clear();
+      std::vector<std::int32_t> edges;
       kernels::find_long_edges(mesh, 0, static_cast<std::int32_t>(mesh.surface.face_count()), edge,
                                edges);
       remesher.refine(edges, faces, edge, 2 * shortest * edge);
@@ -66,6 +66,7 @@ void remesh(benchmark::State& state, double shortest, bool refine) {
     state.ResumeTiming();
   }
   report_vertices(state, rough.vertex_count());
+  state.counters["flipped"] = static_cast<double>(counts.flipped);
   state.counters["collapsed"] = static_cast<double>(counts.collapsed);
   state.counters["split"] = static_cast<double>(counts.split);
 }
@@ -82,19 +83,19 @@ void collapse_half(benchmark::State& state) {
 }
 BENCHMARK(collapse_half)->Unit(benchmark::kMillisecond);
 
-void find_short_edges(benchmark::State& state) {
+void find_odd_faces(benchmark::State& state) {
   const kernels::LevelMesh mesh = rough_sphere(0.3);
   const double edge = mean_edge(mesh);
-  std::vector<std::int32_t> edges;
+  std::vector<std::int32_t> odd;
   for (auto _ : state) {
-    edges.clear();
-    kernels::find_short_edges(mesh, 0, static_cast<std::int32_t>(mesh.surface.face_count()),
-                              0.1 * edge, edges);
-    benchmark::DoNotOptimize(edges.data());
+    odd.clear();
+    kernels::find_odd_faces(mesh, 0, static_cast<std::int32_t>(mesh.surface.face_count()),
+                            0.1 * edge, odd);
+    benchmark::DoNotOptimize(odd.data());
   }
   report_vertices(state, mesh.vertex_count());
 }
-BENCHMARK(find_short_edges)->Unit(benchmark::kMillisecond);
+BENCHMARK(find_odd_faces)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace semigeo::bench

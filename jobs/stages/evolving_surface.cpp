@@ -261,8 +261,10 @@ std::vector<PartMeasure> EvolvingSurface::restore_size() {
   std::vector<PartMeasure> parts = measure_parts(mesh_, context_);
   if (options_.rescale == Rescale::none || options_.schedule != Schedule::uniform) return parts;
   std::vector<Restoration> restorations(parts.size());
-  for (std::size_t i = 0; i < parts.size(); ++i)
+  for (std::size_t i = 0; i < parts.size(); ++i) {
     restorations[i] = {parts[i].centroid(), restoring_factor(part_reference_[i], parts[i])};
+    parts[i] = parts[i].scaled(restorations[i].factor);
+  }
   context_.workers.for_blocks(vertex_count(), kFaceBlock, [&](IndexRange range) {
     for (auto v = range.begin; v < range.end; ++v) {
       const Restoration& r = restorations[mesh_.surface.part[v]];
@@ -270,7 +272,7 @@ std::vector<PartMeasure> EvolvingSurface::restore_size() {
       mesh_.points[v].head<3>() = (r.centre + r.factor * (p - r.centre)).cast<float>();
     }
   });
-  return measure_parts(mesh_, context_);
+  return parts;
 }
 
 /// Rids the mesh, already moved, of odd triangles and of parts on which no patch was valid.

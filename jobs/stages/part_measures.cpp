@@ -54,6 +54,23 @@ PartMeasure& PartMeasure::operator+=(const PartMeasure& other) {
   return *this;
 }
 
+PartMeasure PartMeasure::scaled(double factor) const {
+  PartMeasure result = *this;
+  const Eigen::Vector3d centre = centroid();
+  const double count = 3.0 * static_cast<double>(faces);
+  result.edge_length *= factor;
+  result.twice_area *= factor * factor;
+  result.moment = 3 * result.twice_area * centre;
+  const Eigen::Vector3d from_centre = corners - count * centre;
+  result.corners = count * centre + factor * from_centre;
+  const double squared_from_centre =
+      squared_corners - 2 * centre.dot(corners) + count * centre.squaredNorm();
+  result.squared_corners = count * centre.squaredNorm() + 2 * factor * centre.dot(from_centre) +
+                           factor * factor * squared_from_centre;
+  result.six_volumes *= factor * factor * factor;
+  return result;
+}
+
 Eigen::Vector3d PartMeasure::centroid() const {
   if (!(twice_area > 0)) return Eigen::Vector3d::Zero();
   return moment / (3 * twice_area);

@@ -21,6 +21,8 @@ struct PartMeasure {
   std::int64_t faces = 0;
 
   PartMeasure& operator+=(const PartMeasure& other);
+  /// Of the part enlarged about its centroid.
+  PartMeasure scaled(double factor) const;
   double mean_edge_length() const { return edges > 0 ? edge_length / edges : 0; }
   /// Of the area; zero without any.
   Eigen::Vector3d centroid() const;
