@@ -15,11 +15,13 @@ GaussianFilters make_filters() {
   }
   double variance = 0;
   double fourth = 0;
+  double sixth = 0;
   for (int k = 0; k < kTaps; ++k) {
     const double u = k - kReach;
     g[k] /= sum;
     variance += g[k] * u * u;
     fourth += g[k] * u * u * u * u;
+    sixth += g[k] * std::pow(u, 6);
   }
 
   GaussianFilters filters{};
@@ -32,6 +34,10 @@ GaussianFilters make_filters() {
     // (u^2 - variance) g: annihilates constants; scaled so that r = u^2 gives 2.
     filters.second[k] =
         static_cast<float>(2 * (u * u - variance) * g[k] / (fourth - variance * variance));
+    // (u^3 - c u) g: annihilates r = u; scaled so that r = u^3 gives 6.
+    const double linear = fourth / variance;
+    filters.third[k] =
+        static_cast<float>(6 * (u * u * u - linear * u) * g[k] / (sixth - linear * fourth));
   }
   return filters;
 }

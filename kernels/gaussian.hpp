@@ -14,6 +14,7 @@ struct GaussianFilters {
   std::array<float, kTaps> smooth;  ///< G: sums to 1
   std::array<float, kTaps> first;   ///< G': exact on polynomials of degree 2
   std::array<float, kTaps> second;  ///< G'': exact on polynomials of degree 2
+  std::array<float, kTaps> third;   ///< G''': exact on polynomials of degree 4
   double variance;                  ///< second moment of `smooth`: what one pass adds, in steps^2
 };
 

@@ -1,0 +1,112 @@
+#include "kernels/geodesic_ball.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace semigeo::kernels {
+namespace {
+
+/// Distance of the corner at (x, y), y > 0, from a source below the base (0, 0) - (length, 0) that
+/// lies so far from its ends; from over an end if the straight line misses the base.
+double across_face(double from_first, double from_second, double length, double x, double y) {
+  const double around =
+      std::min(from_first + std::hypot(x, y), from_second + std::hypot(x - length, y));
+  if (!(length > 0)) return around;
+  const double source_x =
+      (from_first * from_first - from_second * from_second + length * length) / (2 * length);
+  const double below2 = from_first * from_first - source_x * source_x;
+  if (!(below2 > 0)) return around;
+  const double below = std::sqrt(below2);
+  const double crossing = source_x + (x - source_x) * below / (below + y);
+  if (!(crossing >= 0 && crossing <= length)) return around;
+  return std::min(around, std::hypot(x - source_x, y + below));
+}
+
+}  // namespace
+
+void GeodesicBall::start(std::int32_t centre) {
+  heap_.clear();
+  if (table_.empty()) table_.resize(256);
+  if (used_ > 0) std::fill(table_.begin(), table_.end(), Known{});
+  used_ = 0;
+  offer(centre, 0);
+}
+
+GeodesicBall::Known& GeodesicBall::known(std::int32_t vertex) {
+  if (2 * used_ >= table_.size()) enlarge();
+  const std::size_t mask = table_.size() - 1;
+  std::size_t slot = (static_cast<std::uint32_t>(vertex) * 2654435769u) & mask;
+  while (table_[slot].vertex != kNone && table_[slot].vertex != vertex) slot = (slot + 1) & mask;
+  if (table_[slot].vertex == kNone) {
+    table_[slot] = {vertex, false, HUGE_VAL};
+    ++used_;
+  }
+  return table_[slot];
+}
+
+void GeodesicBall::enlarge() {
+  std::vector<Known> old(2 * table_.size());
+  old.swap(table_);
+  used_ = 0;
+  for (const Known& entry : old)
+    if (entry.vertex != kNone) known(entry.vertex) = entry;
+}
+
+void GeodesicBall::offer(std::int32_t vertex, double distance) {
+  Known& entry = known(vertex);
+  if (entry.settled || !(distance < entry.distance)) return;
+  entry.distance = distance;
+  heap_.push_back({distance, vertex});
+  std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
+}
+
+bool GeodesicBall::settle_next(std::int32_t& vertex, double& distance) {
+  while (!heap_.empty()) {
+    std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
+    const Front front = heap_.back();
+    heap_.pop_back();
+    Known& entry = known(front.vertex);
+    if (entry.settled || entry.distance != front.distance) continue;
+    entry.settled = true;
+    vertex = front.vertex;
+    distance = front.distance;
+    return true;
+  }
+  return false;
+}
+
+void GeodesicBall::spread(const Surface& surface, std::span<const Eigen::Vector4f> points,
+                          std::int32_t vertex, bool is_centre, double radius) {
+  const double here = known(vertex).distance;
+  const auto point = [&](std::int32_t v) -> Eigen::Vector3d {
+    return points[v].head<3>().cast<double>();
+  };
+  const Eigen::Vector3d p = point(vertex);
+  const auto reach = [&](std::int32_t to, double distance) {
+    if (is_centre || distance <= radius) offer(to, distance);
+  };
+  const std::int32_t start = surface.outgoing[vertex];
+  std::int32_t h = start;
+  do {
+    const std::int32_t a = surface.target(h);
+    const std::int32_t b = surface.origin(prev(h));
+    reach(a, here + (point(a) - p).norm());
+    reach(b, here + (point(b) - p).norm());
+    // Over the face, from the base between this vertex and a settled one to the third corner.
+    for (const auto& [second, third] : {std::pair(a, b), std::pair(b, a)}) {
+      const Known& other = known(second);
+      if (is_centre || !other.settled) continue;
+      const double from_second = other.distance;
+      const Eigen::Vector3d base = point(second) - p;
+      const double length = base.norm();
+      if (!(length > 0)) continue;
+      const Eigen::Vector3d apex = point(third) - p;
+      const double x = apex.dot(base) / length;
+      const double y = std::sqrt(std::max(0.0, apex.squaredNorm() - x * x));
+      reach(third, across_face(here, from_second, length, x, y));
+    }
+    h = surface.ccw(h);
+  } while (h != kNone && h != start);
+}
+
+}  // namespace semigeo::kernels
