@@ -174,6 +174,7 @@ bool Remesher::keep_remnant(std::int32_t h) {
     mesh_.points[corners[i]].head<3>() = (regular[i] + shift).cast<float>();
     mesh_.normals[corners[i]] = regular[i].normalized().cast<float>();
   }
+  vanished_ = true;
   return true;
 }
 
@@ -412,7 +413,7 @@ bool Remesher::split(std::int32_t h, double shortest) {
 
 void Remesher::refine(std::span<const std::int32_t> edges, std::int64_t faces, double longest,
                       double shortest) {
-  if (face_count() >= faces) return;
+  if (face_count() >= faces || vanished_) return;
   Heap heap;
   const auto put = [&](std::int32_t h) {
     const double length2 = mesh_.length2(h);

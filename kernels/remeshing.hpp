@@ -84,6 +84,8 @@ class Remesher {
 
   std::int64_t face_count() const { return editor_.face_count(); }
   const RemeshCounts& counts() const { return counts_; }
+  /// The surface has vanished but for the mark that `remove_odd` leaves; it is not refined.
+  bool vanished() const { return vanished_; }
 
   /// Closes all gaps. New vertices come next to those they come from, every part is one range
   /// of vertices and one of faces, and parts are numbered in that order.
@@ -128,6 +130,7 @@ class Remesher {
   SurfaceEditor editor_;
   bool curved_;
   bool parts_changed_ = false;
+  bool vanished_ = false;
   std::int64_t first_new_;  ///< vertices from here on were made by editing
   RemeshCounts counts_;
   double shortest2_ = 0;  ///< squared threshold of `remove_odd`

@@ -294,8 +294,10 @@ std::vector<PartMeasure> EvolvingSurface::remesh(std::vector<PartMeasure> parts)
                                        context_);
   shortest_side_ = result.shortest_side;
   remeshed_ = result.counts;
+  vanished_ = vanished_ || result.vanished;
   if (!result.changed()) return std::move(result.parts);
-  target_faces_ -= result.counts.dropped_faces;
+  target_faces_ =
+      vanished_ ? mesh_.surface.face_count() : target_faces_ - result.counts.dropped_faces;
   part_reference_ = result.parts;
   adopt_mesh();
   connectivity_ = connectivity();

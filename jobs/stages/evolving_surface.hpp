@@ -97,6 +97,8 @@ class EvolvingSurface {
   LevelFields advance(bool move);
 
   std::int64_t vertex_count() const { return mesh_.vertex_count(); }
+  /// It has collapsed; what is left only marks the place.
+  bool vanished() const { return vanished_; }
 
  private:
   kernels::SampledSurface sampled() const;
@@ -115,7 +117,8 @@ class EvolvingSurface {
 
   engine::RunContext context_;
   EvolutionOptions options_;
-  kernels::LevelMesh mesh_;                   ///< internal units
+  kernels::LevelMesh mesh_;  ///< internal units
+  bool vanished_ = false;
   std::int64_t target_faces_ = 0;             ///< what refining keeps up
   std::vector<PartMeasure> part_reference_;   ///< what rescaling gives back, internal units
   std::vector<std::uint8_t> part_has_patch_;  ///< at the current level

@@ -75,6 +75,7 @@ RemeshResult remesh_surface(kernels::LevelMesh& mesh, std::vector<PartMeasure> p
         remesher.refine(find_all(mesh, context, find_long), target, longer, least);
       }
     }
+    result.vanished = result.vanished || remesher.vanished();
     result.counts += remesher.finish();
     parts = measure_parts(mesh, context);
   }

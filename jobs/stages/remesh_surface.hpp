@@ -25,6 +25,7 @@ struct RemeshResult {
   double shortest_side = 0;        ///< no side and no height is shorter
   std::vector<PartMeasure> parts;  ///< of the result
 
+  bool vanished = false;  ///< only a mark is left
   bool changed() const { return counts != kernels::RemeshCounts{}; }
 };
 

@@ -158,11 +158,6 @@ io::LevelAttributes attributes_of(const LevelFields& fields, int iteration) {
           .dropped_parts = fields.remeshed.dropped_parts};
 }
 
-/// A triangle or a tetrahedron, which evolution leaves where a surface has vanished.
-bool is_remnant(const EvolvingSurface& surface) {
-  return surface.vertex_count() <= 4;
-}
-
 /// Evolves and writes all levels: pass k + 1 runs beside encoding and writing of level k.
 ///
 ///   pass 0 ──► pass 1 ──► pass 2 ──► ...
@@ -293,7 +288,7 @@ SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters&
   const bool filled = !origins.face_filled.empty();
   EvolvingSurface evolving(std::move(surface), parameters.evolution, context, std::move(origins));
   result.remeshed = write_levels(evolving, parameters, filled, *writer, context);
-  result.vanished = is_remnant(evolving) && result.vertices > evolving.vertex_count();
+  result.vanished = evolving.vanished();
   writer->finish();
   return result;
 }

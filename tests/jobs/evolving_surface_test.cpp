@@ -356,6 +356,23 @@ TEST(EvolvingSurfaceTest, ATetrahedronAloneAndATriangleAloneStayFinite) {
   }
 }
 
+TEST(EvolvingSurfaceTest, AWireVanishesAndLeavesAMark) {
+  engine::Workers workers(2);
+  engine::Observer observer;
+  const kernels::Surface built = kernels::build_surface(shapes::torus(1, 1e-4, 40, 4)).surface;
+  EvolvingSurface evolving(kernels::reordered(built, kernels::locality_order(built)), {},
+                           {workers, observer, {}});
+  EXPECT_FALSE(evolving.vanished());
+  EXPECT_EQ(evolving.advance(true).points.size(), 160);
+  for (int k = 1; k < 5; ++k) {
+    EXPECT_TRUE(evolving.vanished());
+    const LevelFields level = evolving.advance(k < 4);
+    ASSERT_EQ(level.points.size(), 4) << "level " << k;
+    EXPECT_GE((level.points[1] - level.points[0]).norm(), level.shortest_side);
+    EXPECT_EQ(*std::ranges::max_element(level.patch_completeness), 0);
+  }
+}
+
 TEST(EvolvingSurfaceTest, TellsTheObserverOfEveryVertexOfEveryLevel) {
   struct Counter : engine::Observer {
     std::atomic<std::int64_t> work = 0;
