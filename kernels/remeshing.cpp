@@ -278,8 +278,8 @@ double Remesher::least_cosine(std::int32_t v, std::int32_t other, const Eigen::V
 /// Where two vertices become one: on the boundary if one of them is; else half way if they are
 /// close and no face is turned over by it, else where faces turn least.
 Eigen::Vector3d Remesher::merged_point(std::int32_t a, std::int32_t b) const {
-  const Eigen::Vector3d pa = mesh_.point(a);
-  const Eigen::Vector3d pb = mesh_.point(b);
+  Eigen::Vector3d pa = mesh_.point(a);
+  Eigen::Vector3d pb = mesh_.point(b);
   const bool a_fixed = mesh_.surface.on_boundary(a);
   const bool b_fixed = mesh_.surface.on_boundary(b);
   if (a_fixed != b_fixed) return a_fixed ? pa : pb;
