@@ -101,7 +101,7 @@ LevelInfo Dataset::level(int level) const {
   info.parts = attribute<std::int64_t>(file_, path, "parts");
   info.shortest_side = attribute<double>(file_, path, "shortest_side");
   for (const LevelCount& count : kLevelCounts)
-    info.*count.count = attribute<std::int64_t>(file_, path, count.name);
+    info.remeshed.*count.count = attribute<std::int64_t>(file_, path, count.name);
   info.vertices = file_.open_array(path + "/points").shape().rows;
   info.triangles = file_.open_array(path + "/triangles").shape().rows;
   for (const LevelArray& array : kLevelArrays) {

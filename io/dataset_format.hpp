@@ -5,6 +5,7 @@
 #include <string>
 
 #include "io/hdf5.hpp"
+#include "kernels/remesh_counts.hpp"
 
 namespace semigeo::io {
 
@@ -32,31 +33,24 @@ struct LevelAttributes {
   double step = 0;             ///< sampling step of the patches
   double scale = 0;            ///< true sigma; strictly increasing from level to level
   double mean_edge_length = 0;
-  std::int64_t parts = 0;    ///< connected parts
-  double shortest_side = 0;  ///< no side and no height is shorter; 0: not seen to
-  // What remeshing did between the level before and this one.
-  std::int64_t flipped = 0;        ///< edges turned to the other diagonal of their two triangles
-  std::int64_t split = 0;          ///< edges halved
-  std::int64_t collapsed = 0;      ///< edges whose ends became one vertex
-  std::int64_t torn = 0;           ///< necks, handles and strips cut
-  std::int64_t inserted = 0;       ///< vertices made, in halved edges and along cuts
-  std::int64_t removed = 0;        ///< vertices of the level before that are gone
-  std::int64_t dropped_parts = 0;  ///< parts removed, too small to carry a patch
+  std::int64_t parts = 0;               ///< connected parts
+  double shortest_side = 0;             ///< no side and no height is shorter; 0: not seen to
+  kernels::RemeshCounts remeshed = {};  ///< what was done to the level before
 };
 
-/// The counts among them, by their names as attributes.
+/// Those of the counts that are attributes, by their names.
 struct LevelCount {
   const char* name;
-  std::int64_t LevelAttributes::*count;
+  std::int64_t kernels::RemeshCounts::*count;
 };
 inline constexpr std::array<LevelCount, 7> kLevelCounts = {{
-    {"flipped", &LevelAttributes::flipped},
-    {"split", &LevelAttributes::split},
-    {"collapsed", &LevelAttributes::collapsed},
-    {"torn", &LevelAttributes::torn},
-    {"inserted", &LevelAttributes::inserted},
-    {"removed", &LevelAttributes::removed},
-    {"dropped_parts", &LevelAttributes::dropped_parts},
+    {"flipped", &kernels::RemeshCounts::flipped},
+    {"split", &kernels::RemeshCounts::split},
+    {"collapsed", &kernels::RemeshCounts::collapsed},
+    {"torn", &kernels::RemeshCounts::torn},
+    {"inserted", &kernels::RemeshCounts::inserted},
+    {"removed", &kernels::RemeshCounts::removed},
+    {"dropped_parts", &kernels::RemeshCounts::dropped_parts},
 }};
 
 /// Which levels have an array.

@@ -94,7 +94,7 @@ void DatasetWriter::write_level(const LevelAttributes& attributes, const Encoded
   file_.write_attribute(level, "parts", attributes.parts);
   file_.write_attribute(level, "shortest_side", attributes.shortest_side);
   for (const LevelCount& count : kLevelCounts)
-    file_.write_attribute(level, count.name, attributes.*count.count);
+    file_.write_attribute(level, count.name, attributes.remeshed.*count.count);
 
   write(level, format_of("points"), fields.points, vertices_);
   write(level, format_of("normals"), fields.normals, vertices_);

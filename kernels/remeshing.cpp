@@ -29,14 +29,6 @@ bool large_fan(const Surface& surface, std::int32_t v) {
   return true;
 }
 
-template <typename Value>
-void gather(std::vector<Value>& values, const std::vector<std::int32_t>& order) {
-  if (values.empty()) return;
-  std::vector<Value> result(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) result[i] = values[order[i]];
-  values = std::move(result);
-}
-
 /// Squared least height of a triangle.
 double squared_height(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                       const Eigen::Vector3d& c) {
@@ -60,18 +52,6 @@ Entry pop(std::vector<Entry>& heap) {
 }
 
 }  // namespace
-
-RemeshCounts& RemeshCounts::operator+=(const RemeshCounts& other) {
-  flipped += other.flipped;
-  collapsed += other.collapsed;
-  split += other.split;
-  torn += other.torn;
-  inserted += other.inserted;
-  removed += other.removed;
-  dropped_parts += other.dropped_parts;
-  dropped_faces += other.dropped_faces;
-  return *this;
-}
 
 double LevelMesh::height2(std::int32_t f) const {
   const auto& t = surface.triangles[f];
@@ -465,11 +445,11 @@ std::vector<std::int32_t> Remesher::order_of_survivors() {
 void Remesher::reorder(const std::vector<std::int32_t>& order) {
   std::vector<std::int32_t> faces;
   mesh_.surface = reordered(mesh_.surface, order, &faces);
-  gather(mesh_.points, order);
-  gather(mesh_.normals, order);
-  gather(mesh_.source, order);
-  gather(mesh_.vertex_filled, order);
-  gather(mesh_.face_filled, faces);
+  mesh_.points = gathered(mesh_.points, order);
+  mesh_.normals = gathered(mesh_.normals, order);
+  mesh_.source = gathered(mesh_.source, order);
+  mesh_.vertex_filled = gathered(mesh_.vertex_filled, order);
+  mesh_.face_filled = gathered(mesh_.face_filled, faces);
 }
 
 RemeshCounts Remesher::finish() {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "kernels/remesh_counts.hpp"
 #include "kernels/surface.hpp"
 #include "kernels/surface_editor.hpp"
 
@@ -27,21 +28,6 @@ struct LevelMesh {
   }
   /// Least height of a face, squared.
   double height2(std::int32_t f) const;
-};
-
-/// What remeshing did.
-struct RemeshCounts {
-  std::int64_t flipped = 0;    ///< edges turned to the other diagonal of their two faces
-  std::int64_t collapsed = 0;  ///< edges whose ends became one vertex
-  std::int64_t split = 0;      ///< edges halved by a new vertex
-  std::int64_t torn = 0;       ///< necks, handles and strips cut
-  std::int64_t inserted = 0;   ///< vertices that are new: in halved edges, along cuts
-  std::int64_t removed = 0;    ///< vertices that are gone: collapsed, or dropped with a part
-  std::int64_t dropped_parts = 0;
-  std::int64_t dropped_faces = 0;
-
-  bool operator==(const RemeshCounts&) const = default;
-  RemeshCounts& operator+=(const RemeshCounts& other);
 };
 
 /// Appends those faces of [begin, end) that have a side or a height shorter than `length`.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -19,5 +20,15 @@ std::vector<std::int32_t> locality_order(const Surface& surface);
 /// the old index of each face.
 Surface reordered(const Surface& surface, const std::vector<std::int32_t>& order,
                   std::vector<std::int32_t>* face_order = nullptr);
+
+/// What vertices or faces carry, in their new order: result[i] = values[order[i]]. Nothing stays
+/// nothing.
+template <typename Value>
+std::vector<Value> gathered(const std::vector<Value>& values,
+                            const std::vector<std::int32_t>& order) {
+  std::vector<Value> result(values.empty() ? 0 : order.size());
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = values[order[i]];
+  return result;
+}
 
 }  // namespace semigeo::kernels

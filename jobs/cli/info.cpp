@@ -46,7 +46,8 @@ nlohmann::json level_json(const io::Dataset& dataset, int k) {
   const auto truncated =
       std::count_if(completeness.begin(), completeness.end(), [](float c) { return c < 1; });
   nlohmann::json remeshing = nlohmann::json::object();
-  for (const io::LevelCount& count : io::kLevelCounts) remeshing[count.name] = info.*count.count;
+  for (const io::LevelCount& count : io::kLevelCounts)
+    remeshing[count.name] = info.remeshed.*count.count;
   return {{"iteration", info.iteration},
           {"scale", info.scale},
           {"step", info.step},

@@ -43,7 +43,7 @@ struct LevelFields {
 
   std::int64_t parts = 0;
   kernels::RemeshCounts remeshed;  ///< what was done to the mesh of the level before
-  double shortest_side = 0;        ///< no edge is shorter; 0: nobody saw to that
+  double shortest_side = 0;        ///< no side and no height is shorter; 0: not seen to
   /// Row i of the level is vertex (*stored_order)[i].
   std::shared_ptr<const std::vector<std::int32_t>> stored_order;
   std::optional<LevelConnectivity> connectivity;  ///< if it is not that of the level before

@@ -47,13 +47,6 @@ void check_usable(const kernels::Surface& surface, const SurfaceJob& job,
         "export the scan in a unit that suits its size");
 }
 
-std::vector<std::uint8_t> gathered(const std::vector<std::uint8_t>& values,
-                                   const std::vector<std::int32_t>& order) {
-  std::vector<std::uint8_t> result(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) result[i] = values[order[i]];
-  return result;
-}
-
 /// Encodes arrays chunk by chunk on all workers.
 class ParallelEncoder {
  public:
@@ -88,7 +81,7 @@ class ParallelEncoder {
   std::vector<Task> tasks_;
 };
 
-io::EncodedConnectivity encode_connectivity(const LevelConnectivity& connectivity, bool filled,
+io::EncodedConnectivity encode_connectivity(const LevelConnectivity& connectivity,
                                             ParallelEncoder& encoder) {
   io::EncodedConnectivity encoded;
   encoder.add(io::array_of(std::span(connectivity.triangles)), encoded.triangles);
@@ -96,7 +89,7 @@ io::EncodedConnectivity encode_connectivity(const LevelConnectivity& connectivit
                            io::ElementType::int64),
               encoded.source_vertex);
   encoder.add(io::array_of(std::span<const std::int32_t>(connectivity.part)), encoded.part);
-  if (filled) {
+  if (!connectivity.face_filled.empty()) {
     encoder.add(io::array_of(std::span(connectivity.vertex_filled)),
                 encoded.vertex_filled.emplace());
     encoder.add(io::array_of(std::span(connectivity.face_filled)), encoded.face_filled.emplace());
@@ -149,13 +142,7 @@ io::LevelAttributes attributes_of(const LevelFields& fields, int iteration) {
           .mean_edge_length = fields.mean_edge_length,
           .parts = fields.parts,
           .shortest_side = fields.shortest_side,
-          .flipped = fields.remeshed.flipped,
-          .split = fields.remeshed.split,
-          .collapsed = fields.remeshed.collapsed,
-          .torn = fields.remeshed.torn,
-          .inserted = fields.remeshed.inserted,
-          .removed = fields.remeshed.removed,
-          .dropped_parts = fields.remeshed.dropped_parts};
+          .remeshed = fields.remeshed};
 }
 
 /// Evolves and writes all levels: pass k + 1 runs beside encoding and writing of level k.
@@ -164,11 +151,9 @@ io::LevelAttributes attributes_of(const LevelFields& fields, int iteration) {
 ///     └► encode 0 ─► write 0 ─► (pass 2)      at most two levels of fields are in memory
 ///          └► encode 1 ─► write 1 ─► ...
 kernels::RemeshCounts write_levels(EvolvingSurface& surface, const SurfaceParameters& parameters,
-                                   bool filled, io::DatasetWriter& writer,
-                                   const engine::RunContext& context) {
+                                   io::DatasetWriter& writer, const engine::RunContext& context) {
   struct Level {
     std::unique_ptr<LevelFields> fields;
-    kernels::RemeshCounts remeshed;
     io::LevelAttributes attributes;
     std::optional<io::EncodedConnectivity> connectivity;
     io::EncodedFields encoded;
@@ -192,14 +177,13 @@ kernels::RemeshCounts write_levels(EvolvingSurface& surface, const SurfaceParame
         cost));
     const auto encode = graph.add(
         "encode " + name, {pass[k]},
-        [&context, &parameters, &level, k, filled] {
+        [&context, &parameters, &level, k] {
           const LevelFields& fields = *level.fields;
           ParallelEncoder encoder(context.workers, parameters.compression);
           if (fields.connectivity)
-            level.connectivity = encode_connectivity(*fields.connectivity, filled, encoder);
+            level.connectivity = encode_connectivity(*fields.connectivity, encoder);
           level.encoded = encode_fields(fields, *fields.stored_order, encoder);
           level.attributes = attributes_of(fields, k);
-          level.remeshed = fields.remeshed;
           level.fields.reset();
         },
         cost / 10);
@@ -210,7 +194,7 @@ kernels::RemeshCounts write_levels(EvolvingSurface& surface, const SurfaceParame
         [&writer, &level, &remeshed] {
           if (level.connectivity) writer.write_connectivity(*level.connectivity);
           writer.write_level(level.attributes, level.encoded);
-          remeshed += level.remeshed;
+          remeshed += level.attributes.remeshed;
           level.connectivity.reset();
           level.encoded = {};
         },
@@ -227,14 +211,9 @@ std::string to_json(const kernels::SurfaceRepairs& repairs) {
 }
 
 std::string to_json(const kernels::RemeshCounts& remeshed) {
-  return nlohmann::json{{"collapsed", remeshed.collapsed},
-                        {"dropped_parts", remeshed.dropped_parts},
-                        {"flipped", remeshed.flipped},
-                        {"inserted", remeshed.inserted},
-                        {"removed", remeshed.removed},
-                        {"split", remeshed.split},
-                        {"torn", remeshed.torn}}
-      .dump();
+  nlohmann::json json;
+  for (const io::LevelCount& count : io::kLevelCounts) json[count.name] = remeshed.*count.count;
+  return json.dump();
 }
 
 SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters& parameters,
@@ -275,19 +254,15 @@ SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters&
 
     writer = std::make_unique<io::DatasetWriter>(job.output, header, parameters.compression);
     ParallelEncoder encoder(context.workers, parameters.compression);
-    const bool filled = !prepared.face_filled.empty();
-    writer->write_connectivity(encode_connectivity(first_connectivity(prepared), filled, encoder));
+    writer->write_connectivity(encode_connectivity(first_connectivity(prepared), encoder));
     origins.vertex = kernels::locality_order(prepared.surface);
     std::vector<std::int32_t> faces;
     surface = kernels::reordered(prepared.surface, origins.vertex, &faces);
-    if (filled) {
-      origins.vertex_filled = gathered(prepared.vertex_filled, origins.vertex);
-      origins.face_filled = gathered(prepared.face_filled, faces);
-    }
+    origins.vertex_filled = kernels::gathered(prepared.vertex_filled, origins.vertex);
+    origins.face_filled = kernels::gathered(prepared.face_filled, faces);
   }
-  const bool filled = !origins.face_filled.empty();
   EvolvingSurface evolving(std::move(surface), parameters.evolution, context, std::move(origins));
-  result.remeshed = write_levels(evolving, parameters, filled, *writer, context);
+  result.remeshed = write_levels(evolving, parameters, *writer, context);
   result.vanished = evolving.vanished();
   writer->finish();
   return result;

@@ -10,13 +10,13 @@ SampleLevel sample_level(const Sample& sample, int level) {
                        .mean_edge_length = 1.5,
                        .parts = 1 + (sample.vertices - 1) / 1000,
                        .shortest_side = 0.125,
-                       .flipped = 7,
-                       .split = 1,
-                       .collapsed = 2,
-                       .torn = 3,
-                       .inserted = 4,
-                       .removed = 5,
-                       .dropped_parts = 6};
+                       .remeshed = {.flipped = 7,
+                                    .split = 1,
+                                    .collapsed = 2,
+                                    .torn = 3,
+                                    .inserted = 4,
+                                    .removed = 5,
+                                    .dropped_parts = 6}};
   for (std::int64_t i = 0; i < sample.vertices_of(level); ++i) {
     const auto x = static_cast<float>(i);
     const auto k = static_cast<float>(level);

@@ -21,14 +21,6 @@ struct EvolvedMesh {
   }
 };
 
-template <typename Value>
-void put_in_order(std::vector<Value>& values, const std::vector<std::int32_t>& order) {
-  if (values.empty()) return;
-  std::vector<Value> rows(values.size());
-  for (std::size_t i = 0; i < order.size(); ++i) rows[i] = values[order[i]];
-  values = std::move(rows);
-}
-
 /// Level 0 and `smoothings` more.
 inline EvolvedMesh evolve_mesh(kernels::TriangleMesh mesh, int smoothings,
                                const EvolutionOptions& options = {}, int threads = 2) {
@@ -42,15 +34,15 @@ inline EvolvedMesh evolve_mesh(kernels::TriangleMesh mesh, int smoothings,
   for (int k = 0; k <= smoothings; ++k) {
     LevelFields fields = evolving.advance(k < smoothings);
     const std::vector<std::int32_t>& rows = *fields.stored_order;
-    put_in_order(fields.points, rows);
-    put_in_order(fields.normals, rows);
-    put_in_order(fields.gaussian_curvature, rows);
-    put_in_order(fields.mean_curvature, rows);
-    put_in_order(fields.patch_completeness, rows);
-    put_in_order(fields.principal_curvature_1, rows);
-    put_in_order(fields.principal_curvature_2, rows);
-    put_in_order(fields.principal_direction_1, rows);
-    put_in_order(fields.principal_direction_2, rows);
+    fields.points = kernels::gathered(fields.points, rows);
+    fields.normals = kernels::gathered(fields.normals, rows);
+    fields.gaussian_curvature = kernels::gathered(fields.gaussian_curvature, rows);
+    fields.mean_curvature = kernels::gathered(fields.mean_curvature, rows);
+    fields.patch_completeness = kernels::gathered(fields.patch_completeness, rows);
+    fields.principal_curvature_1 = kernels::gathered(fields.principal_curvature_1, rows);
+    fields.principal_curvature_2 = kernels::gathered(fields.principal_curvature_2, rows);
+    fields.principal_direction_1 = kernels::gathered(fields.principal_direction_1, rows);
+    fields.principal_direction_2 = kernels::gathered(fields.principal_direction_2, rows);
     result.levels.push_back(std::move(fields));
   }
   return result;
