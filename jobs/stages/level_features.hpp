@@ -1,0 +1,25 @@
+#pragma once
+
+#include "engine/run_context.hpp"
+#include "jobs/stages/evolving_surface.hpp"
+#include "kernels/features.hpp"
+
+namespace semigeo::jobs {
+
+struct FeatureOptions {
+  /// Maxima of curvature are compared with what lies within so many scales of the level, along the
+  /// surface; 0: with the ring of neighbours, as in the thesis.
+  double radius = 1.5;
+  double min_completeness = 0.6;  ///< of the patches of vertices that may be features
+};
+
+/// Maxima of curvature, zero-crossing contours, their torsion and its maxima on the level that
+/// `fields` were evaluated on; call before the surface moves on. Maxima are in the order of the
+/// level's rows, contours open ones first. |K| sigma^2 below 1e-6 and |H| sigma below 1e-5 are
+/// zero: what is flat has neither maxima nor contours. Runs on all workers; the result does not
+/// depend on the number of threads. Source: thesis 4.4, 5.6.1, 5.7.
+kernels::LevelFeatures find_features(const EvolvingSurface& surface, const LevelFields& fields,
+                                     const FeatureOptions& options,
+                                     const engine::RunContext& context);
+
+}  // namespace semigeo::jobs
