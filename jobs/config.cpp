@@ -30,10 +30,14 @@ std::string to_json(const SurfaceParameters& parameters) {
   return nlohmann::json{
       {"compression", parameters.compression == io::Compression::deflate ? "deflate" : "none"},
       {"decimate", tolerance},
+      {"feature_completeness", parameters.features.min_completeness},
+      {"feature_radius", parameters.features.radius},
       {"fill_holes", preparation.fill_holes},
       {"target_vertices", preparation.target_vertices},
       {"coordinates", polar ? "polar" : "semigeodesic"},
       {"length_unit", parameters.length_unit},
+      {"level", parameters.recognition_level ? nlohmann::json(*parameters.recognition_level)
+                                             : nlohmann::json("slope")},
       {"levels", parameters.levels},
       {"principal", evolution.principal},
       {"remesh", evolution.remesh},

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "io/chunk_codec.hpp"
 #include "jobs/stages/evolving_surface.hpp"
+#include "jobs/stages/level_features.hpp"
 #include "jobs/stages/prepare_surface.hpp"
 
 namespace semigeo::jobs {
@@ -15,6 +17,8 @@ struct SurfaceParameters {
   int levels = 8;  ///< smoothing iterations; the dataset has levels + 1 levels
   PreparationOptions preparation = {};
   EvolutionOptions evolution = {};
+  FeatureOptions features = {};
+  std::optional<int> recognition_level = {};  ///< else the one of least slope (thesis 5.8)
   io::Compression compression = io::Compression::deflate;
   std::string length_unit = "unknown";
 };

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Part of every key: raised whenever the same scan and parameters give other bytes.
-constexpr const char* kSurfaceJobVersion = "surface 8";
+constexpr const char* kSurfaceJobVersion = "surface 9";
 constexpr std::size_t kSuffixDigits = 8;
 constexpr std::size_t kMaxNameLength = 180;
 

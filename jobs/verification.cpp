@@ -1,12 +1,15 @@
 #include "jobs/verification.hpp"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
+#include <cstdint>
 #include <system_error>
 #include <thread>
 
@@ -17,6 +20,16 @@ namespace semigeo::jobs {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// CPU seconds that verifying may take: a thousand times what it takes, for HDF5 goes round in
+/// circles over some damaged files.
+rlim_t most_seconds(const fs::path& dataset) {
+  constexpr std::uintmax_t kLeast = 2;
+  constexpr std::uintmax_t kBytesPerSecond = 10'000'000;
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(dataset, error);
+  return kLeast + (error ? 0 : bytes / kBytesPerSecond);
+}
 
 /// A process that verifies one dataset, and the end of the pipe that tells what it found.
 struct Child {
@@ -37,6 +50,8 @@ std::string problem_of(const fs::path& dataset) {
   // What the C library says of a crash is no sentence.
   const int nowhere = open("/dev/null", O_WRONLY);
   if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);
+  const rlimit limit = {most_seconds(dataset), RLIM_INFINITY};
+  setrlimit(RLIMIT_CPU, &limit);
   const std::string problem = problem_of(dataset);
   for (std::size_t at = 0; at < problem.size();) {
     const ssize_t written = write(findings, problem.data() + at, problem.size() - at);
@@ -77,7 +92,10 @@ std::string result_of(const Child& child, const fs::path& dataset) {
   while (waitpid(child.process, &status, 0) < 0 && errno == EINTR) {
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return problem;
-  return io::Error(dataset, "", "it is damaged so that HDF5 crashes over it",
+  const bool endless = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU;
+  return io::Error(dataset, "",
+                   endless ? "it is damaged so that HDF5 never ends reading it"
+                           : "it is damaged so that HDF5 crashes over it",
                    "remove it and run again, or run with --verify")
       .what();
 }

@@ -32,6 +32,7 @@ struct RunOptions {
   std::string decimate;
   std::string rescale = "size";
   bool no_remesh = false;
+  int level = -1;  ///< not told
   std::string compression = "deflate";
   bool json = false;
   bool dry_run = false;
@@ -316,21 +317,28 @@ void set_tolerance(const std::string& text, SurfaceParameters& parameters) {
 
 /// The options that datasets depend on, as --config reads them.
 std::string config_text(const RunOptions& options) {
-  char text[1024];
   const SurfaceParameters& p = options.config.surface;
-  std::snprintf(text, sizeof text,
-                "# Effective configuration; use it again with --config.\n"
-                "[run]\nfill-holes = %lld\ndecimate = \"%s\"\ntarget-vertices = %lld\nlevels = "
-                "%d\nsurface = \"%s\"\ncoordinates = \"%s\"\nschedule = \"%s\"\nrescale = \"%s\"\n"
-                "no-remesh = %s\n"
-                "principal = %s\nstep = %.17g\ncompression = \"%s\"\n"
-                "unit = \"%s\"\n",
-                static_cast<long long>(p.preparation.fill_holes), options.decimate.c_str(),
-                static_cast<long long>(p.preparation.target_vertices), p.levels,
-                options.surface.c_str(), options.coordinates.c_str(), options.schedule.c_str(),
-                options.rescale.c_str(), options.no_remesh ? "true" : "false",
-                p.evolution.principal ? "true" : "false", p.evolution.step_factor,
-                options.compression.c_str(), p.length_unit.c_str());
+  std::string text = "# Effective configuration; use it again with --config.\n[run]\n";
+  // JSON's numbers, booleans and strings are TOML's.
+  const auto add = [&text](const char* name, const nlohmann::json& value) {
+    text += std::string(name) + " = " + value.dump() + '\n';
+  };
+  add("fill-holes", p.preparation.fill_holes);
+  add("decimate", options.decimate);
+  add("target-vertices", p.preparation.target_vertices);
+  add("levels", p.levels);
+  add("surface", options.surface);
+  add("coordinates", options.coordinates);
+  add("schedule", options.schedule);
+  add("rescale", options.rescale);
+  add("no-remesh", options.no_remesh);
+  add("principal", p.evolution.principal);
+  add("step", p.evolution.step_factor);
+  add("feature-radius", p.features.radius);
+  add("feature-completeness", p.features.min_completeness);
+  if (p.recognition_level) add("level", *p.recognition_level);
+  add("compression", options.compression);
+  add("unit", p.length_unit);
   return text;
 }
 
@@ -388,6 +396,29 @@ void add_evolution_options(CLI::App* command, RunOptions& options) {
       ->check(refuse_nan);
 }
 
+/// Maxima, and the level that counts.
+void add_feature_options(CLI::App* command, RunOptions& options) {
+  FeatureOptions& features = options.config.surface.features;
+  command
+      ->add_option(
+          "--feature-radius", features.radius,
+          "Maxima of curvature outdo all of their sign within so many scales of the level.\n"
+          "0: only the ring of neighbours, as in the thesis")
+      ->check(CLI::Range(0.0, 20.0))
+      ->check(refuse_nan);
+  command
+      ->add_option("--feature-completeness", features.min_completeness,
+                   "Vertices with less of their patch are no features: 1 is all of it")
+      ->check(CLI::Range(0.0, 1.0))
+      ->check(refuse_nan);
+  command
+      ->add_option("--level", options.level,
+                   "The level for recognition; else that at which the number of features changes\n"
+                   "least")
+      ->default_str("")
+      ->check(CLI::Range(0, 999));
+}
+
 /// How datasets are stored and labelled.
 void add_storage_options(CLI::App* command, RunOptions& options) {
   SurfaceParameters& surface = options.config.surface;
@@ -421,6 +452,11 @@ void apply_words(RunOptions& options) {
                                  "give at most " +
                                      std::to_string(kMostOctaveLevels));
   }
+  if (options.level > parameters.levels)
+    throw CLI::ValidationError("--level", "the levels are 0 to " +
+                                              std::to_string(parameters.levels) +
+                                              "; give one of them, or more --levels");
+  if (options.level >= 0) parameters.recognition_level = options.level;
   options.config.surface.compression =
       options.compression == "deflate" ? io::Compression::deflate : io::Compression::none;
 }
@@ -454,6 +490,7 @@ void add_run(CLI::App& app, int& exit_code) {
       ->configurable(false);
   add_preparation_options(command, *options);
   add_evolution_options(command, *options);
+  add_feature_options(command, *options);
   add_storage_options(command, *options);
   command->add_option("--threads", config.threads, "Threads at once; 0: one per core")
       ->check(CLI::Range(0, 4096));

@@ -128,8 +128,8 @@ class Finder {
 
   /// Those of the peaks that stand out and outdo all within the radius.
   std::vector<std::int32_t> highest_within_radius(const CurvatureField& field,
-                                   const std::vector<std::int32_t>& peaks,
-                                   const std::vector<float>& prominences) const {
+                                                  const std::vector<std::int32_t>& peaks,
+                                                  const std::vector<float>& prominences) const {
     return collect<std::int32_t>(
         workers_, static_cast<std::int64_t>(peaks.size()), kPeakBlock,
         [&](IndexRange range, std::vector<std::int32_t>& found) {

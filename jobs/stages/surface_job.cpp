@@ -14,6 +14,8 @@
 #include "io/file_digest.hpp"
 #include "io/scan_reader.hpp"
 #include "jobs/stages/evolving_surface.hpp"
+#include "jobs/stages/level_features.hpp"
+#include "kernels/scale_selection.hpp"
 #include "kernels/vertex_order.hpp"
 
 namespace semigeo::jobs {
@@ -110,14 +112,9 @@ LevelConnectivity first_connectivity(const PreparedSurface& prepared) {
   return first;
 }
 
-kernels::SampledContours no_contours() {
-  kernels::SampledContours none;
-  none.offsets = {0};
-  return none;
-}
-
-io::EncodedFields encode_fields(const LevelFields& fields, io::RowOrder order,
+io::EncodedFields encode_fields(const LevelFields& fields, const kernels::LevelFeatures& features,
                                 ParallelEncoder& encoder) {
+  const io::RowOrder order = *fields.stored_order;
   io::EncodedFields encoded;
   encoder.add(io::array_of(std::span(fields.points), order), encoded.points);
   encoder.add(io::array_of(std::span(fields.normals), order), encoded.normals);
@@ -137,8 +134,6 @@ io::EncodedFields encode_fields(const LevelFields& fields, io::RowOrder order,
     encoder.add(io::array_of(std::span(fields.principal_direction_2), order),
                 principal.direction_2);
   }
-  const kernels::LevelFeatures features = {.of_kind = {},
-                                           .contours = {no_contours(), no_contours()}};
   io::for_each_array(
       features, encoded.features,
       [&](const io::ArrayView& view, io::EncodedArray& target) { encoder.add(view, target); });
@@ -156,63 +151,86 @@ io::LevelAttributes attributes_of(const LevelFields& fields, int iteration) {
           .remeshed = fields.remeshed};
 }
 
-/// Evolves and writes all levels: pass k + 1 runs beside encoding and writing of level k.
+/// What all levels together came to.
+struct LevelTotals {
+  kernels::RemeshCounts remeshed;
+  std::vector<std::int64_t> feature_counts;  ///< of each level
+};
+
+/// Evolves and writes all levels: pass k + 1 runs beside encoding and writing of level k. A pass is
+/// curvature, features, and then the move to the next level.
 ///
-///   pass 0 ──► pass 1 ──► pass 2 ──► ...
-///     └► encode 0 ─► write 0 ─► (pass 2)      at most two levels of fields are in memory
-///          └► encode 1 ─► write 1 ─► ...
-kernels::RemeshCounts write_levels(EvolvingSurface& surface, const SurfaceParameters& parameters,
-                                   io::DatasetWriter& writer, const engine::RunContext& context) {
+///   pass 0 ──► move 0 ──► pass 1 ──► move 1 ──► pass 2 ──► ...
+///     └► encode 0 ─► write 0 ─────────────────► (pass 2)   at most two levels are in memory
+///                                └► encode 1 ─► write 1 ─► ...
+LevelTotals write_levels(EvolvingSurface& surface, const SurfaceParameters& parameters,
+                         io::DatasetWriter& writer, const engine::RunContext& context) {
   struct Level {
     std::unique_ptr<LevelFields> fields;
+    kernels::LevelFeatures features;
     io::LevelAttributes attributes;
     std::optional<io::EncodedConnectivity> connectivity;
     io::EncodedFields encoded;
   };
-  kernels::RemeshCounts remeshed;
+  LevelTotals totals;
   std::vector<Level> levels(parameters.levels + 1);
   const auto cost = static_cast<double>(surface.vertex_count());
   engine::TaskGraph graph;
-  std::vector<engine::TaskGraph::Task> pass, write;
+  std::vector<engine::TaskGraph::Task> move, write;
   for (int k = 0; k <= parameters.levels; ++k) {
     Level& level = levels[k];
     const std::string name = std::to_string(k);
     std::vector<engine::TaskGraph::Task> after;
-    if (k >= 1) after.push_back(pass[k - 1]);
+    if (k >= 1) after.push_back(move[k - 1]);
     if (k >= 2) after.push_back(write[k - 2]);
-    pass.push_back(graph.add(
+    const auto pass = graph.add(
         "pass " + name, after,
-        [&surface, &level, last = k == parameters.levels] {
-          level.fields = std::make_unique<LevelFields>(surface.advance(!last));
+        [&surface, &parameters, &context, &level] {
+          level.fields = std::make_unique<LevelFields>(surface.evaluate());
+          level.features = find_features(surface, *level.fields, parameters.features, context);
         },
-        cost));
+        cost);
+    if (k < parameters.levels)
+      move.push_back(graph.add(
+          "move " + name, {pass}, [&surface] { surface.move(); }, cost / 4));
     const auto encode = graph.add(
-        "encode " + name, {pass[k]},
+        "encode " + name, {pass},
         [&context, &parameters, &level, k] {
           const LevelFields& fields = *level.fields;
           ParallelEncoder encoder(context.workers, parameters.compression);
           if (fields.connectivity)
             level.connectivity = encode_connectivity(*fields.connectivity, encoder);
-          level.encoded = encode_fields(fields, *fields.stored_order, encoder);
+          level.encoded = encode_fields(fields, level.features, encoder);
           level.attributes = attributes_of(fields, k);
           level.fields.reset();
+          level.features = {};
         },
         cost / 10);
     after = {encode};
     if (k >= 1) after.push_back(write[k - 1]);
     write.push_back(graph.add(
         "write " + name, after,
-        [&writer, &level, &remeshed] {
+        [&writer, &level, &totals] {
           if (level.connectivity) writer.write_connectivity(*level.connectivity);
           writer.write_level(level.attributes, level.encoded);
-          remeshed += level.attributes.remeshed;
+          totals.remeshed += level.attributes.remeshed;
+          totals.feature_counts.push_back(io::counts_of(level.encoded.features).total());
           level.connectivity.reset();
           level.encoded = {};
         },
         cost / 20));
   }
   rethrow_first(graph.run(context));
-  return remeshed;
+  return totals;
+}
+
+/// The level at which the scan will be recognised.
+io::Selection selection(std::vector<std::int64_t> feature_counts, std::optional<int> told) {
+  kernels::ScaleSelection scale = kernels::select_scale(feature_counts);
+  return {.feature_counts = std::move(feature_counts),
+          .smoothed = std::move(scale.smoothed),
+          .level = told.value_or(scale.level),
+          .chosen = told ? io::Chosen::option : io::Chosen::slope};
 }
 
 }  // namespace
@@ -273,11 +291,11 @@ SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters&
     origins.face_filled = kernels::gathered(prepared.face_filled, faces);
   }
   EvolvingSurface evolving(std::move(surface), parameters.evolution, context, std::move(origins));
-  result.remeshed = write_levels(evolving, parameters, *writer, context);
+  LevelTotals totals = write_levels(evolving, parameters, *writer, context);
+  result.remeshed = totals.remeshed;
   result.vanished = evolving.vanished();
-  const auto levels = static_cast<std::size_t>(result.levels);
-  writer->write_selection({.feature_counts = std::vector<std::int64_t>(levels),
-                           .smoothed = std::vector<double>(levels)});
+  writer->write_selection(
+      selection(std::move(totals.feature_counts), parameters.recognition_level));
   writer->finish();
   return result;
 }

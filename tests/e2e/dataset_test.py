@@ -31,8 +31,10 @@ class SphereDatasetTest(SemigeoTest):
         self.assertEqual(attributes["complete"], 1)
         self.assertEqual(json.loads(attributes["parameters"]),
                          {"compression": "deflate", "coordinates": "semigeodesic",
-                          "decimate": "0.0 edges", "fill_holes": 0, "target_vertices": 0,
-                          "length_unit": "mm", "levels": LEVELS, "principal": False, "remesh": True, "rescale": "size",
+                          "decimate": "0.0 edges", "feature_completeness": 0.6,
+                          "feature_radius": 1.5, "fill_holes": 0, "target_vertices": 0,
+                          "length_unit": "mm", "level": "slope", "levels": LEVELS,
+                          "principal": False, "remesh": True, "rescale": "size",
                           "schedule": "uniform", "step": 1.0, "surface": "curved"})
         for name in ("input_xxh3", "digest", "job_key"):
             self.assertEqual(len(attributes[name]), 32, name)

@@ -151,8 +151,7 @@ TEST_F(FeatureTables, ContoursMustFollowOneAnother) {
   expect_refused([](auto& c) { c.offsets.front() = 1; }, "offsets", "does not begin at point 0");
   expect_refused([](auto& c) { c.offsets[2] = c.offsets[1]; }, "offsets",
                  "contour 1 has no points");
-  expect_refused([](auto& c) { c.offsets[3] = 1000; }, "offsets",
-                 "contour 3 has no points");
+  expect_refused([](auto& c) { c.offsets[3] = 1000; }, "offsets", "contour 3 has no points");
   expect_refused([](auto& c) { ++c.offsets.back(); }, "offsets", "ends at point 34 of 33");
   expect_refused([](auto& c) { --c.offsets.back(); }, "offsets", "ends at point 32 of 33");
 }

@@ -13,7 +13,8 @@ TEST(ConfigTest, ParametersAreJsonWithSortedKeys) {
   EXPECT_EQ(
       to_json(SurfaceParameters{}),
       R"({"compression":"deflate","coordinates":"semigeodesic","decimate":"0.0 edges",)"
-      R"("fill_holes":0,"length_unit":"unknown","levels":8,"principal":false,)"
+      R"("feature_completeness":0.6,"feature_radius":1.5,"fill_holes":0,)"
+      R"("length_unit":"unknown","level":"slope","levels":8,"principal":false,)"
       R"("remesh":true,"rescale":"size","schedule":"uniform","step":1.0,"surface":"curved","target_vertices":0})");
   const SurfaceParameters other = {.levels = 3,
                                    .preparation = {.fill_holes = 40,
@@ -27,12 +28,15 @@ TEST(ConfigTest, ParametersAreJsonWithSortedKeys) {
                                                  .remesh = false,
                                                  .principal = true,
                                                  .step_factor = 0.1},
+                                   .features = {.radius = 0, .min_completeness = 0.75},
+                                   .recognition_level = 2,
                                    .compression = io::Compression::none,
                                    .length_unit = "m\"m"};
   EXPECT_EQ(
       to_json(other),
       R"({"compression":"none","coordinates":"polar","decimate":"0.25 length units",)"
-      R"("fill_holes":40,"length_unit":"m\"m","levels":3,"principal":true,)"
+      R"("feature_completeness":0.75,"feature_radius":0.0,"fill_holes":40,)"
+      R"("length_unit":"m\"m","level":2,"levels":3,"principal":true,)"
       R"("remesh":false,"rescale":"edges","schedule":"octaves","step":0.1,"surface":"flat","target_vertices":1993})");
 }
 
