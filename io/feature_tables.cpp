@@ -31,26 +31,31 @@ std::string contours_path(const std::string& level, int kind) {
   return level + "/contours/" + kFeatureKindNames[kind];
 }
 
-/// The shapes that the arrays of one kind of contours must have.
+/// An array of one kind of contours.
 struct ContourArray {
   const char* name;
   EncodedArray EncodedContours::*encoded;
   ElementType type;
   int columns;
-  std::int64_t rows;
 
-  bool fits(const ArrayShape& shape) const {
+  bool fits(const ArrayShape& shape, std::int64_t rows) const {
     return shape.type == type && shape.columns == columns && shape.rows == rows;
   }
 };
+constexpr std::size_t kContourArrayCount = 5;
+constexpr std::array<ContourArray, kContourArrayCount> kContourArrays = {{
+    {"points", &EncodedContours::points, ElementType::float32, 3},
+    {"torsion", &EncodedContours::torsion, ElementType::float32, 1},
+    {"offsets", &EncodedContours::offsets, ElementType::int64, 1},
+    {"closed", &EncodedContours::closed, ElementType::uint8, 1},
+    {"maxima", &EncodedContours::maxima, ElementType::int64, 1},
+}};
 
-std::array<ContourArray, 5> contour_arrays(std::int64_t points, std::int64_t contours,
-                                           std::int64_t maxima) {
-  return {{{"points", &EncodedContours::points, ElementType::float32, 3, points},
-           {"torsion", &EncodedContours::torsion, ElementType::float32, 1, points},
-           {"offsets", &EncodedContours::offsets, ElementType::int64, 1, contours + 1},
-           {"closed", &EncodedContours::closed, ElementType::uint8, 1, contours},
-           {"maxima", &EncodedContours::maxima, ElementType::int64, 1, maxima}}};
+/// The rows that each of them must have.
+std::array<std::int64_t, kContourArrayCount> contour_rows(std::int64_t points,
+                                                          std::int64_t contours,
+                                                          std::int64_t maxima) {
+  return {points, points, contours + 1, contours, maxima};
 }
 
 bool is_table(const ArrayShape& shape) {
@@ -63,11 +68,13 @@ void write_contours(DigestedFile& file, const std::string& group, const EncodedC
   file.create_group(group);
   file.write_attribute(group, "length", contours.length);
   file.write_attribute(group, "count", count);
-  for (const ContourArray& array : contour_arrays(contours.points.shape.rows, count, maxima)) {
-    const EncodedArray& encoded = contours.*array.encoded;
-    if (!array.fits(encoded.shape))
-      throw std::invalid_argument(group + "/" + array.name + " does not fit the other arrays");
-    file.write_array(group + "/" + array.name, encoded);
+  const auto rows = contour_rows(contours.points.shape.rows, count, maxima);
+  for (std::size_t i = 0; i < kContourArrayCount; ++i) {
+    const std::string path = group + "/" + kContourArrays[i].name;
+    const EncodedArray& array = contours.*kContourArrays[i].encoded;
+    if (!kContourArrays[i].fits(array.shape, rows[i]))
+      throw std::invalid_argument(path + " does not fit the other arrays");
+    file.write_array(path, array);
   }
 }
 
@@ -143,13 +150,15 @@ FeatureCounts check_features(const Hdf5File& file, const std::string& level) {
     const std::string group = contours_path(level, kind);
     counts.contours[kind] = file.read_attribute_as<std::int64_t>(group, "count");
     counts.contour_length[kind] = file.read_attribute_as<double>(group, "length");
-    const std::int64_t points = file.open_array(group + "/points").shape().rows;
-    for (const ContourArray& array :
-         contour_arrays(points, counts.contours[kind], counts.of_kind[torsion_of(kind)])) {
-      const std::string path = group + "/" + array.name;
-      if (!array.fits(file.open_array(path).shape()))
-        file.refuse(path, "has not the type or shape that its contours must have");
-    }
+    std::array<ArrayShape, kContourArrayCount> shapes;
+    for (std::size_t i = 0; i < kContourArrayCount; ++i)
+      shapes[i] = file.open_array(group + "/" + kContourArrays[i].name).shape();
+    const auto rows =
+        contour_rows(shapes[0].rows, counts.contours[kind], counts.of_kind[torsion_of(kind)]);
+    for (std::size_t i = 0; i < kContourArrayCount; ++i)
+      if (!kContourArrays[i].fits(shapes[i], rows[i]))
+        file.refuse(group + "/" + kContourArrays[i].name,
+                    "has not the type or shape that its contours must have");
   }
   return counts;
 }

@@ -1,70 +1,14 @@
 #include "io/mesh_writer.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <limits>
-#include <memory>
 #include <stdexcept>
-#include <system_error>
 
-#include "io/atomic_file.hpp"
 #include "io/error.hpp"
+#include "io/output_file.hpp"
 
 namespace semigeo::io {
 namespace {
-
-/// Bytes on their way into a file. Every failure of the disk is an Error that names `shown_path`.
-class Output {
- public:
-  Output(const std::filesystem::path& path, std::filesystem::path shown_path)
-      : shown_path_(std::move(shown_path)), file_(std::fopen(path.c_str(), "wb")) {
-    if (!file_) fail("cannot be created");
-    buffer_.reserve(kBufferBytes + 64);
-  }
-
-  void text(std::string_view bytes) { add(bytes.data(), bytes.size()); }
-
-  template <typename Number>
-  void number(Number value) {
-    std::array<char, sizeof value> bytes;
-    std::memcpy(bytes.data(), &value, bytes.size());
-    if constexpr (std::endian::native == std::endian::big) std::reverse(bytes.begin(), bytes.end());
-    add(bytes.data(), bytes.size());
-  }
-
-  /// Must be called last: only the closing reports the last of the failures.
-  void close() {
-    flush();
-    if (std::fclose(file_.release()) != 0) fail("cannot be written");
-  }
-
- private:
-  static constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-
-  void add(const char* bytes, std::size_t count) {
-    buffer_.insert(buffer_.end(), bytes, bytes + count);
-    if (buffer_.size() >= kBufferBytes) flush();
-  }
-  void flush() {
-    if (std::fwrite(buffer_.data(), 1, buffer_.size(), file_.get()) != buffer_.size())
-      fail("cannot be written");
-    buffer_.clear();
-  }
-  [[noreturn]] void fail(const std::string& problem) const {
-    throw Error(shown_path_, "", problem + ": " + std::generic_category().message(errno),
-                "check the folder, its permissions and the free space");
-  }
-
-  std::filesystem::path shown_path_;
-  std::unique_ptr<std::FILE, Close> file_;
-  std::vector<char> buffer_;
-};
 
 bool is_word(const std::string& name) {
   return !name.empty() &&
@@ -80,14 +24,10 @@ void check_shapes(const MeshView& mesh) {
   if (!fits) throw std::invalid_argument("write_ply: arrays of different lengths, or a bad name");
 }
 
-bool has_origin(const MeshView& mesh) {
-  return std::any_of(mesh.origin.begin(), mesh.origin.end(), [](double o) { return o != 0; });
-}
-
 std::string header(const MeshView& mesh) {
-  std::string text = "ply\nformat binary_little_endian 1.0\ncomment written by semigeo\n";
+  std::string text = kPlyBegin;
   text += "element vertex " + std::to_string(mesh.points.size() / 3) + "\n";
-  const std::string type = has_origin(mesh) ? "double" : "float";
+  const std::string type = Placement(mesh.origin).ply_type();
   for (const char* name : {"x", "y", "z"}) text += "property " + type + " " + name + "\n";
   if (!mesh.normals.empty())
     for (const char* name : {"nx", "ny", "nz"})
@@ -97,31 +37,24 @@ std::string header(const MeshView& mesh) {
   return text + "property list uchar int vertex_indices\nend_header\n";
 }
 
-void write_vertices(Output& output, const MeshView& mesh) {
-  const bool wide = has_origin(mesh);
+void write_vertices(OutputFile& output, const MeshView& mesh) {
+  const Placement placement(mesh.origin);
   for (std::size_t vertex = 0; vertex < mesh.points.size() / 3; ++vertex) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float coordinate = mesh.points[3 * vertex + axis];
-      if (wide) {
-        output.number(coordinate + mesh.origin[axis]);
-      } else {
-        output.number(coordinate);
-      }
-    }
+    placement.place(&mesh.points[3 * vertex], [&](auto coordinate) { output.number(coordinate); });
     if (!mesh.normals.empty())
       for (std::size_t axis = 0; axis < 3; ++axis) output.number(mesh.normals[3 * vertex + axis]);
     for (const NamedScalars& scalars : mesh.scalars) output.number(scalars.values[vertex]);
   }
 }
 
-void write_faces(Output& output, const std::filesystem::path& path, const MeshView& mesh) {
+void write_faces(OutputFile& output, const MeshView& mesh) {
   const auto vertices = static_cast<std::int64_t>(mesh.points.size() / 3);
   const std::int64_t end =
       std::min<std::int64_t>(vertices, std::numeric_limits<std::int32_t>::max());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const std::int64_t corner = mesh.triangles[i];
     if (corner < 0 || corner >= end)
-      throw Error(path, "face " + std::to_string(i / 3),
+      throw Error(output.path(), "face " + std::to_string(i / 3),
                   "refers to vertex " + std::to_string(corner) + " of " + std::to_string(vertices));
     if (i % 3 == 0) output.number(std::uint8_t{3});
     output.number(static_cast<std::int32_t>(corner));
@@ -132,13 +65,11 @@ void write_faces(Output& output, const std::filesystem::path& path, const MeshVi
 
 void write_ply(const std::filesystem::path& path, const MeshView& mesh) {
   check_shapes(mesh);
-  AtomicFile file(path);
-  Output output(file.temporary_path(), path);
+  OutputFile output(path);
   output.text(header(mesh));
   write_vertices(output, mesh);
-  write_faces(output, path, mesh);
-  output.close();
-  file.commit();
+  write_faces(output, mesh);
+  output.commit();
 }
 
 }  // namespace semigeo::io

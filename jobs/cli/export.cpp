@@ -1,28 +1,84 @@
+#include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "io/dataset.hpp"
 #include "io/error.hpp"
+#include "io/feature_writer.hpp"
 #include "io/mesh_writer.hpp"
 #include "jobs/cli/command.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {
 
+using kernels::FeatureKind;
+using kernels::kFeatureKindNames;
+using kernels::kFeatureKinds;
+
 struct ExportOptions {
   std::string dataset;
   int level = 0;
   std::string output;
   std::string quality = "mean_curvature";
+  std::string features;  ///< a kind or "all"
+  std::string contours;  ///< a kind
 };
 
-int export_level(const ExportOptions& options) {
-  const io::Dataset dataset(options.dataset);
-  if (options.level >= dataset.level_count())
+enum class OutputFormat { ply, csv };
+
+/// By the extension; a surface has no columns that would make it a CSV.
+OutputFormat format_of(const ExportOptions& options) {
+  const bool surface = options.features.empty() && options.contours.empty();
+  std::string extension = std::filesystem::path(options.output).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  if (extension == ".ply") return OutputFormat::ply;
+  if (extension == ".csv" && !surface) return OutputFormat::csv;
+  throw CLI::ValidationError("--output", options.output + " does not say how to write it: " +
+                                             (surface ? "give a name that ends in .ply"
+                                                      : "give a name that ends in .ply or .csv"));
+}
+
+void require_level(const io::Dataset& dataset, int level) {
+  if (level >= dataset.level_count())
     throw io::Error(
-        options.dataset, "level " + std::to_string(options.level),
+        dataset.path(), "level " + std::to_string(level),
         "does not exist; there are " + std::to_string(dataset.level_count()) + " levels",
         "give --level 0 to " + std::to_string(dataset.level_count() - 1));
+}
+
+void export_features(const io::Dataset& dataset, const ExportOptions& options,
+                     OutputFormat format) {
+  std::array<std::vector<kernels::Feature>, kFeatureKinds> features;
+  std::vector<io::FeaturesView> tables;
+  std::size_t count = 0;
+  for (int kind = 0; kind < kFeatureKinds; ++kind) {
+    if (options.features != "all" && options.features != kFeatureKindNames[kind]) continue;
+    features[kind] = dataset.read_features(options.level, FeatureKind(kind));
+    tables.push_back({FeatureKind(kind), features[kind]});
+    count += features[kind].size();
+  }
+  const auto write = format == OutputFormat::ply ? io::write_features_ply : io::write_features_csv;
+  write(options.output, tables, dataset.header().origin);
+  std::printf("%s: %zu features, kind = %s\n", options.output.c_str(), count,
+              options.features.c_str());
+}
+
+void export_contours(const io::Dataset& dataset, const ExportOptions& options,
+                     OutputFormat format) {
+  const bool gaussian = options.contours == kFeatureKindNames[0];
+  const kernels::SampledContours contours =
+      dataset.read_contours(options.level, gaussian ? FeatureKind::gaussian : FeatureKind::mean);
+  const auto write = format == OutputFormat::ply ? io::write_contours_ply : io::write_contours_csv;
+  write(options.output, contours, dataset.header().origin);
+  std::printf("%s: %zu contours %s = 0, %zu points\n", options.output.c_str(),
+              contours.closed.size(), gaussian ? "K" : "H", contours.points.size());
+}
+
+void export_surface(const io::Dataset& dataset, const ExportOptions& options) {
   if (options.quality.starts_with("principal") && !dataset.has_principal())
     throw io::Error(options.dataset, "", "has no principal curvatures",
                     "run with --principal, or export another --quality");
@@ -41,6 +97,19 @@ int export_level(const ExportOptions& options) {
   io::write_ply(options.output, mesh);
   std::printf("%s: %zu vertices, %zu triangles, quality = %s\n", options.output.c_str(),
               points.size() / 3, triangles.size() / 3, options.quality.c_str());
+}
+
+int export_level(const ExportOptions& options) {
+  const OutputFormat format = format_of(options);
+  const io::Dataset dataset(options.dataset);
+  require_level(dataset, options.level);
+  if (!options.features.empty()) {
+    export_features(dataset, options, format);
+  } else if (!options.contours.empty()) {
+    export_contours(dataset, options, format);
+  } else {
+    export_surface(dataset, options);
+  }
   return kAllDone;
 }
 
@@ -48,20 +117,38 @@ int export_level(const ExportOptions& options) {
 
 void add_export(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ExportOptions>();
-  CLI::App* command =
-      app.add_subcommand("export", "Write one level as a binary PLY with normals and curvatures");
+  CLI::App* command = app.add_subcommand(
+      "export",
+      "Write one level as a binary PLY with normals and curvatures, or its features or contours");
   command->footer(
       "Examples:\n"
       "  semigeo export archive/scans/x.ply.vtkhdf --level 4 --output smooth.ply\n"
       "  semigeo export archive/scans/x.ply.vtkhdf --output k.ply --quality gaussian_curvature\n"
+      "  semigeo export archive/scans/x.ply.vtkhdf --level 4 --features all --output f.csv\n"
+      "  semigeo export archive/scans/x.ply.vtkhdf --level 4 --contours mean --output lines.ply\n"
       "\n"
-      "The `quality` is what MeshLab and CloudCompare colour by.\n");
+      "The `quality` is what MeshLab and CloudCompare colour by. Features and contours are\n"
+      "written as PLY (points; points and edges) or CSV, by the extension of --output.\n");
   command->add_option("dataset", options->dataset, "A dataset")->required();
   command->add_option("--level", options->level, "Scale level")->check(CLI::Range(0, 999));
-  command->add_option("-o,--output", options->output, "The PLY file to write")->required();
-  command->add_option("--quality", options->quality, "Field that becomes `quality`")
-      ->check(CLI::IsMember({"gaussian_curvature", "mean_curvature", "patch_completeness",
-                             "principal_curvature_1", "principal_curvature_2"}));
+  command->add_option("-o,--output", options->output, "The file to write")->required();
+  CLI::Option* quality =
+      command->add_option("--quality", options->quality, "Field that becomes `quality`")
+          ->check(CLI::IsMember({"gaussian_curvature", "mean_curvature", "patch_completeness",
+                                 "principal_curvature_1", "principal_curvature_2"}));
+  CLI::Option* features =
+      command
+          ->add_option("--features", options->features,
+                       "Features of this kind instead of the surface: maxima of |K|, of |H|, of "
+                       "torsion along K = 0, along H = 0")
+          ->check(CLI::IsMember({"gaussian", "mean", "gaussian_torsion", "mean_torsion", "all"}))
+          ->excludes(quality);
+  command
+      ->add_option("--contours", options->contours,
+                   "Contours K = 0 (gaussian) or H = 0 (mean) instead of the surface")
+      ->check(CLI::IsMember({"gaussian", "mean"}))
+      ->excludes(quality)
+      ->excludes(features);
   command->callback([options, &exit_code] { exit_code = export_level(*options); });
 }
 

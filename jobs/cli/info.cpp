@@ -36,6 +36,28 @@ Range range_over_valid(const std::vector<float>& values, const std::vector<float
   return range;
 }
 
+nlohmann::json features_json(const io::FeatureCounts& counts) {
+  nlohmann::json json;
+  for (int kind = 0; kind < kernels::kFeatureKinds; ++kind)
+    json[kernels::kFeatureKindNames[kind]] = counts.of_kind[kind];
+  return json;
+}
+
+nlohmann::json contours_json(const io::FeatureCounts& counts) {
+  nlohmann::json json;
+  for (int kind = 0; kind < io::kContourKinds; ++kind)
+    json[kernels::kFeatureKindNames[kind]] = {{"count", counts.contours[kind]},
+                                              {"length", counts.contour_length[kind]}};
+  return json;
+}
+
+nlohmann::json selection_json(const io::Selection& selection) {
+  return {{"level", selection.level},
+          {"chosen", io::name_of(selection.chosen)},
+          {"feature_counts", selection.feature_counts},
+          {"smoothed", selection.smoothed}};
+}
+
 nlohmann::json level_json(const io::Dataset& dataset, int k) {
   const io::LevelInfo info = dataset.level(k);
   const auto completeness = dataset.read_floats(k, "patch_completeness");
@@ -57,6 +79,8 @@ nlohmann::json level_json(const io::Dataset& dataset, int k) {
           {"parts", info.parts},
           {"shortest_side", info.shortest_side},
           {"remeshing", std::move(remeshing)},
+          {"features", features_json(info.features)},
+          {"contours", contours_json(info.features)},
           {"gaussian_curvature", {gaussian.low, gaussian.high}},
           {"mean_curvature", {mean.low, mean.high}},
           {"invalid_vertices", invalid},
@@ -86,6 +110,7 @@ nlohmann::json dataset_json(const std::filesystem::path& path) {
           {"length_unit", header.length_unit},
           {"origin", header.origin},
           {"digest", dataset.digest()},
+          {"selection", selection_json(dataset.selection())},
           {"levels", std::move(levels)}};
 }
 
@@ -97,6 +122,27 @@ std::string remeshing_in_words(const nlohmann::json& counts) {
                                    std::pair("dropped_parts", "parts lost")})
     if (counts[name] != 0) text += (text.empty() ? "" : ", ") + counts[name].dump() + " " + word;
   return text;
+}
+
+void print_features(const nlohmann::json& d) {
+  std::printf(
+      "  level  max |K|  max |H|  torsion on K = 0, H = 0  features  smoothed   "
+      "K = 0    length     H = 0    length\n");
+  int k = 0;
+  for (const auto& level : d["levels"]) {
+    const nlohmann::json& features = level["features"];
+    const nlohmann::json& contours = level["contours"];
+    const auto count = [](const nlohmann::json& number) { return number.get<long long>(); };
+    const auto length = [](const nlohmann::json& number) { return number.get<double>(); };
+    std::printf(
+        "  %5d  %-7lld  %-7lld  %-16lld  %-5lld  %-8lld  %-9.4g  %-7lld  %-9.4g  %-7lld  %.4g\n", k,
+        count(features["gaussian"]), count(features["mean"]), count(features["gaussian_torsion"]),
+        count(features["mean_torsion"]), count(d["selection"]["feature_counts"][k]),
+        length(d["selection"]["smoothed"][k]), count(contours["gaussian"]["count"]),
+        length(contours["gaussian"]["length"]), count(contours["mean"]["count"]),
+        length(contours["mean"]["length"]));
+    ++k;
+  }
 }
 
 void print_dataset(const nlohmann::json& d) {
@@ -112,6 +158,8 @@ void print_dataset(const nlohmann::json& d) {
   if (!d["preparation"].empty()) std::printf("  preparation %s\n", d["preparation"].dump().c_str());
   std::printf("  length unit %s, digest %s\n", d["length_unit"].get<std::string>().c_str(),
               d["digest"].get<std::string>().c_str());
+  std::printf("  selection   level %lld, chosen by %s\n", d["selection"]["level"].get<long long>(),
+              d["selection"]["chosen"] == "slope" ? "the curve of its features" : "the user");
   std::printf(
       "  level  scale       vertices   triangles  parts  K from .. to              "
       "H from .. to              truncated  invalid  remeshed\n");
@@ -126,6 +174,7 @@ void print_dataset(const nlohmann::json& d) {
         level["mean_curvature"][0].get<double>(), level["mean_curvature"][1].get<double>(),
         level["truncated_vertices"].get<long long>(), level["invalid_vertices"].get<long long>(),
         remeshing_in_words(level["remeshing"]).c_str());
+  print_features(d);
 }
 
 /// An archive: one line a dataset, from attributes and sizes alone.
@@ -181,7 +230,8 @@ void add_info(CLI::App& app, int& exit_code) {
   command->footer(
       "Examples:\n"
       "  semigeo info archive                            one line per dataset\n"
-      "  semigeo info archive/scans/x.ply.vtkhdf         levels, scales, curvature ranges, origin\n"
+      "  semigeo info archive/scans/x.ply.vtkhdf         levels, scales, curvature ranges, "
+      "features\n"
       "  semigeo info archive/scans/x.ply.vtkhdf --json  the same for programs\n");
   command->add_option("target", options->target, "A dataset, or an archive")->required();
   command->add_flag("--json", options->json, "As JSON");

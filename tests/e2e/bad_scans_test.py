@@ -115,7 +115,7 @@ class DamagedDatasetTest(SemigeoTest):
         found = []
         with h5py.File(self.dataset(name), "r") as file:
             def add(path, item):
-                if isinstance(item, h5py.Dataset) and item.chunks:  # an empty one has none
+                if isinstance(item, h5py.Dataset) and item.chunks:  # empty ones have none
                     for i in range(item.id.get_num_chunks()):
                         chunk = item.id.get_chunk_info(i)
                         found.append((path, chunk.byte_offset, chunk.size))
@@ -129,7 +129,7 @@ class DamagedDatasetTest(SemigeoTest):
         def add(path, item):
             seen[path] = {key: np.asarray(value).tolist() for key, value in item.attrs.items()}
             if isinstance(item, h5py.Dataset):
-                seen[path]["="] = (item.dtype.str, item.shape, item[...].tobytes())
+                seen[path]["="] = (str(item.dtype), item.shape, item[...].tobytes())
             else:
                 for key in item:
                     add(f"{path}{key}/", item[key])

@@ -11,6 +11,8 @@ import termios
 import unittest
 from pathlib import Path
 
+import h5py
+
 from support import PROGRAM, SemigeoTest, icosphere, obj_text, plane, write_ply
 
 COMMANDS = ("run", "info", "check", "export")
@@ -234,7 +236,22 @@ class InfoTest(SemigeoTest):
             self.assertEqual((level["invalid_vertices"], level["truncated_vertices"]), (0, 0))
         text = self.semigeo("info", self.dataset("sphere.ply")).stdout
         self.assertIn(document["digest"], text)
-        self.assertEqual(len(text.splitlines()), 6 + 3)
+        self.assertEqual(len(text.splitlines()), 7 + 3 + 1 + 3)
+        self.assertLessEqual(max(len(line) for line in text.splitlines()[-4:]), 120)
+        self.assertIn(f"level {document['selection']['level']}, chosen by the curve", text)
+        with h5py.File(self.dataset("sphere.ply"), "r") as file:
+            for k, level in enumerate(document["levels"]):
+                group = file[f"levels/{k:03d}"]
+                self.assertEqual(level["features"],
+                                 {name: len(table) for name, table in group["features"].items()})
+                self.assertEqual(sum(level["features"].values()),
+                                 document["selection"]["feature_counts"][k])
+                self.assertEqual(level["contours"],
+                                 {name: {"count": len(contours["closed"]),
+                                         "length": contours.attrs["length"]}
+                                  for name, contours in group["contours"].items()})
+            self.assertEqual(document["selection"]["level"], file["selection"].attrs["level"])
+            self.assertEqual(document["selection"]["smoothed"], list(file["selection/smoothed"]))
 
     def test_of_an_archive(self):
         for target in (self.archive, self.archive / "scans"):

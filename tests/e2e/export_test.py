@@ -1,4 +1,4 @@
-"""`semigeo export`: the PLY holds the level's arrays, value by value."""
+"""`semigeo export`: the files hold the level's arrays, value by value."""
 
 import unittest
 
@@ -7,11 +7,12 @@ import numpy as np
 
 from support import SemigeoTest, icosphere, write_ply
 
-KINDS = {"float": "<f4", "double": "<f8"}
+KINDS = {"float": "<f4", "double": "<f8", "int": "<i4", "uchar": "u1"}
+FEATURES = ("gaussian", "mean", "gaussian_torsion", "mean_torsion")
 
 
-def read_ply(path):
-    """Vertex records and triangles of a binary PLY, by its own header."""
+def read_elements(path):
+    """The header of a binary PLY (counts and properties of elements) and the bytes after it."""
     data = path.read_bytes()
     header, body = data.split(b"end_header\n", 1)
     lines = header.decode().splitlines()
@@ -24,6 +25,31 @@ def read_ply(path):
             counts[element], properties[element] = int(words[2]), []
         elif words[0] == "property":
             properties[element].append(words[1:])
+    return counts, properties, body
+
+
+def read_points(path):
+    """Vertex records and edges (0, 2) of a binary PLY that has no faces."""
+    counts, properties, body = read_elements(path)
+    vertex = np.dtype([(name, KINDS[kind]) for kind, name in properties["vertex"]])
+    points = np.frombuffer(body, vertex, counts["vertex"])
+    edges = np.frombuffer(body, "<i4", offset=points.nbytes).reshape(-1, 2)
+    assert len(edges) == counts.get("edge", 0)
+    if "edge" in counts:
+        assert properties["edge"] == [["int", "vertex1"], ["int", "vertex2"]]
+    return points, edges
+
+
+def read_csv(path):
+    """Columns by name, as texts."""
+    names, *lines = path.read_text().splitlines()
+    rows = [line.split(",") for line in lines]
+    return {name: [row[i] for row in rows] for i, name in enumerate(names.split(","))}
+
+
+def read_ply(path):
+    """Vertex records and triangles of a binary PLY, by its own header."""
+    counts, properties, body = read_elements(path)
     vertex = np.dtype([(name, KINDS[kind]) for kind, name in properties["vertex"]])
     assert properties["face"] == [["list", "uchar", "int", "vertex_indices"]]
     face = np.dtype([("count", "u1"), ("corners", "<i4", 3)])
@@ -81,12 +107,90 @@ class ExportTest(SemigeoTest):
                 h5py.File(self.dataset("s.ply"), "r") as first:
             np.testing.assert_array_equal(again["levels/000/points"], first["levels/001/points"])
 
+    def test_features_as_they_are(self):
+        self.export(1e6)
+        for level in (0, 2):
+            for choice in (*FEATURES, "all"):
+                kinds = FEATURES if choice == "all" else (choice,)
+                with h5py.File(self.dataset("s.ply"), "r") as file:
+                    wanted = [file[f"levels/{level:03d}/features/{kind}"][...] for kind in kinds]
+                    origin = file.attrs["origin"]
+                numbers = np.repeat([FEATURES.index(kind) for kind in kinds],
+                                    [len(table) for table in wanted])
+                wanted = np.concatenate(wanted)
+                arguments = (self.dataset("s.ply"), "--level", level, "--features", choice)
+                for name in ("f.ply", "f.csv"):
+                    process = self.semigeo("export", *arguments, "-o", self.folder / name)
+                    self.assertIn(f"{len(wanted)} features", process.stdout)
+                points, _ = read_points(self.folder / "f.ply")
+                columns = read_csv(self.folder / "f.csv")
+                self.assertEqual(tuple(columns), points.dtype.names)
+                np.testing.assert_array_equal(points["kind"], numbers)
+                self.assertEqual(columns.pop("kind"), [FEATURES[number] for number in numbers])
+                for prefix, member in (("", "position"), ("initial_", "initial_position")):
+                    for axis, values in zip("xyz", (wanted[member] + origin).T):
+                        np.testing.assert_array_equal(points[prefix + axis], values)
+                for axis, values in zip("xyz", wanted["normal"].T):
+                    np.testing.assert_array_equal(points["n" + axis], values)
+                for member in ("vertex", "value", "prominence", "scale_free_gaussian",
+                               "scale_free_mean"):
+                    np.testing.assert_array_equal(points[member], wanted[member])
+                for name, texts in columns.items():
+                    np.testing.assert_array_equal(np.array(texts, points.dtype[name]),
+                                                  points[name])
+
+    def test_contours_as_they_are(self):
+        self.export(1e6)
+        for level, kind in ((0, "gaussian"), (2, "mean")):
+            with h5py.File(self.dataset("s.ply"), "r") as file:
+                wanted = {name: array[...] for name, array in
+                          file[f"levels/{level:03d}/contours/{kind}"].items()}
+                positions = wanted["points"] + file.attrs["origin"]
+            arguments = (self.dataset("s.ply"), "--level", level, "--contours", kind)
+            for name in ("c.ply", "c.csv"):
+                self.semigeo("export", *arguments, "-o", self.folder / name)
+            points, edges = read_points(self.folder / "c.ply")
+            columns = read_csv(self.folder / "c.csv")
+            self.assertEqual(tuple(columns), points.dtype.names)
+            offsets, closed = wanted["offsets"], wanted["closed"]
+            np.testing.assert_array_equal(
+                np.stack([points[axis] for axis in "xyz"], axis=1), positions)
+            np.testing.assert_array_equal(points["torsion"], wanted["torsion"])
+            np.testing.assert_array_equal(points["contour"],
+                                          np.repeat(np.arange(len(closed)), np.diff(offsets)))
+            np.testing.assert_array_equal(points["closed"], np.repeat(closed, np.diff(offsets)))
+            lines = [(p - 1, p) for a, b in zip(offsets, offsets[1:]) for p in range(a + 1, b)]
+            ends = [(b - 1, a) for a, b, c in zip(offsets, offsets[1:], closed)
+                    if c and b - a > 2]
+            self.assertEqual(sorted(map(tuple, edges.tolist())), sorted(lines + ends))
+            for name, texts in columns.items():
+                np.testing.assert_array_equal(np.array(texts, points.dtype[name]), points[name])
+
+    def test_the_extension_says_how(self):
+        self.export(0)
+        dataset = self.dataset("s.ply")
+        for arguments, word in ((("--features", "all", "-o", "f.txt"), ".ply or .csv"),
+                                (("--contours", "mean", "-o", "f"), ".ply or .csv"),
+                                (("-o", "f.csv"), "ends in .ply"),
+                                (("--features", "torsion", "-o", "f.csv"), "torsion"),
+                                (("--contours", "all", "-o", "f.csv"), "all"),
+                                (("--features", "all", "--contours", "mean", "-o", "f.csv"),
+                                 "excludes"),
+                                (("--features", "all", "--quality", "mean_curvature", "-o",
+                                  "f.csv"), "excludes")):
+            with self.subTest(arguments=arguments):
+                process = self.semigeo("export", dataset, *arguments, code=2, cwd=self.folder)
+                self.assertIn(word, process.stderr)
+        self.assertEqual(list(self.folder.glob("f*")), [])
+        self.semigeo("export", dataset, "--features", "all", "-o", self.folder / "F.CSV")
+
     def test_what_cannot_be_exported_is_said(self):
         self.export(0)
         dataset = self.dataset("s.ply")
         output = self.folder / "other.ply"
         for arguments, word in (
                 ((dataset, "--level", 3, "--output", output), "0 to 2"),
+                ((dataset, "--level", 3, "--output", output, "--features", "all"), "0 to 2"),
                 ((dataset, "--output", self.folder / "no/folder.ply"), "no/folder.ply"),
                 ((self.folder / "none.vtkhdf", "--output", output), "none.vtkhdf"),
                 ((self.folder / "out.ply", "--output", output), "out.ply")):

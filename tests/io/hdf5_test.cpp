@@ -127,6 +127,8 @@ TEST(Hdf5, ReadersRefuseOtherShapesAndTypes) {
   EXPECT_EQ(read_floats(read, "/a", 1), (std::vector<float>{1, 2, 3}));
   EXPECT_TRUE(mentions(message_of([&] { read_floats(read, "/a", 3); }), "1 columns instead of 3"));
   EXPECT_TRUE(mentions(message_of([&] { read_integers(read, "/a", 1); }), "float32 instead of"));
+  EXPECT_TRUE(mentions(message_of([&] { read_records(read, "/a", ElementType::feature); }),
+                       "float32 instead of {vertex:int64,"));
   EXPECT_TRUE(mentions(message_of([&] { read_floats(read, "/b", 1); }), "/b"));
 }
 

@@ -2,6 +2,7 @@ semigeo_tests(io_reader_tests LABEL unit
   SOURCES
     byte_source_test.cpp
     decimal_test.cpp
+    feature_writer_test.cpp
     file_digest_test.cpp
     mesh_writer_test.cpp
     obj_reader_test.cpp
