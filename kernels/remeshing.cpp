@@ -308,7 +308,10 @@ void Remesher::carry_over(std::int32_t a, std::int32_t b) {
   if (normal.norm() > 0) mesh_.normals[a] = normal.normalized();
   std::int32_t& source = mesh_.source[a];
   const std::int32_t other = mesh_.source[b];
-  if (source == kNone || (other != kNone && other < source)) source = other;
+  if (source == kNone || (other != kNone && other < source)) {
+    source = other;
+    mesh_.initial_points[a] = mesh_.initial_points[b];
+  }
   if (!mesh_.vertex_filled.empty()) mesh_.vertex_filled[a] &= mesh_.vertex_filled[b];
 }
 
@@ -346,7 +349,9 @@ void Remesher::carry_new_vertices() {
     const bool copy = b == kNone;
     Eigen::Vector4f point = mesh_.points[a];
     Eigen::Vector3f normal = mesh_.normals[a];
+    Eigen::Vector3f initial_point = mesh_.initial_points[a];
     if (!copy) {
+      initial_point = (initial_point + mesh_.initial_points[b]) / 2;
       point.head<3>() = middle(a, b);
       const Eigen::Vector3f sum = normal + mesh_.normals[b];
       if (sum.norm() > 0) normal = sum.normalized();
@@ -354,6 +359,7 @@ void Remesher::carry_new_vertices() {
     mesh_.points.push_back(point);
     mesh_.normals.push_back(normal);
     mesh_.source.push_back(copy ? mesh_.source[a] : kNone);
+    mesh_.initial_points.push_back(initial_point);
     mesh_.surface.part.push_back(mesh_.surface.part[a]);
     if (!mesh_.vertex_filled.empty()) {
       const std::uint8_t filled = mesh_.vertex_filled[a];
@@ -448,6 +454,7 @@ void Remesher::reorder(const std::vector<std::int32_t>& order) {
   mesh_.points = gathered(mesh_.points, order);
   mesh_.normals = gathered(mesh_.normals, order);
   mesh_.source = gathered(mesh_.source, order);
+  mesh_.initial_points = gathered(mesh_.initial_points, order);
   mesh_.vertex_filled = gathered(mesh_.vertex_filled, order);
   mesh_.face_filled = gathered(mesh_.face_filled, faces);
 }

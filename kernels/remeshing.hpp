@@ -13,12 +13,14 @@ namespace semigeo::kernels {
 
 /// A surface on its way through the levels, with all that its vertices carry along.
 struct LevelMesh {
-  Surface surface;                          ///< connectivity; without points
-  std::vector<Eigen::Vector4f> points;      ///< (N) fourth component 0
-  std::vector<Eigen::Vector3f> normals;     ///< (N) unit, or zero
-  std::vector<std::int32_t> source;         ///< (N) vertex of level 0, or kNone: inserted
-  std::vector<std::uint8_t> vertex_filled;  ///< (N) 1 = made by filling a hole; or empty
-  std::vector<std::uint8_t> face_filled;    ///< (F)
+  Surface surface;                              ///< connectivity; without points
+  std::vector<Eigen::Vector4f> points;          ///< (N) fourth component 0
+  std::vector<Eigen::Vector3f> normals;         ///< (N) unit, or zero
+  std::vector<std::int32_t> source;             ///< (N) vertex of level 0, or kNone: inserted
+  std::vector<Eigen::Vector3f> initial_points;  ///< (N) where on level 0: at `source`, or between
+                                                ///< those of the ends of the edge that was halved
+  std::vector<std::uint8_t> vertex_filled;      ///< (N) 1 = made by filling a hole; or empty
+  std::vector<std::uint8_t> face_filled;        ///< (F)
 
   std::int64_t vertex_count() const { return static_cast<std::int64_t>(points.size()); }
   Eigen::Vector3d point(std::int32_t v) const { return points[v].head<3>().cast<double>(); }

@@ -26,6 +26,8 @@ ScaleSelection select_scale(std::span<const std::int64_t> feature_counts) {
   for (int level = 0; level < n; ++level) {
     const int before = std::max(level - 1, 0);
     const int after = std::min(level + 1, n - 1);
+    if (feature_counts[before] == 0 || feature_counts[level] == 0 || feature_counts[after] == 0)
+      continue;
     if (after == before) break;
     const double slope =
         std::abs(result.smoothed[after] - result.smoothed[before]) / (after - before);

@@ -15,7 +15,8 @@ struct ScaleSelection {
 /// Chooses a level from the number of features on each: the curve over the levels is smoothed by a
 /// Gaussian of one level, truncated and renormalised at the ends, and the level of least slope is
 /// taken, the lowest of several. The slope is that between the neighbours of a level; ends have
-/// only one. Source: thesis 5.8.
+/// only one. Levels without features, and those beside them, are not taken: a surface that has
+/// vanished is stable too. Source: thesis 5.8.
 ScaleSelection select_scale(std::span<const std::int64_t> feature_counts);
 
 }  // namespace semigeo::kernels

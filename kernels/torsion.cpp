@@ -11,6 +11,8 @@ namespace {
 
 /// Curvature times sample distance below which a curve is straight, and has no osculating plane.
 constexpr double kStraight = 1e-3;
+/// Nothing higher can be reached.
+constexpr float kNoPass = -1;
 
 }  // namespace
 
@@ -29,7 +31,7 @@ ArcSamples resample(std::span<const Eigen::Vector3d> points, bool closed, double
     samples.at.push_back({0, 0});
     return samples;
   }
-  const auto pieces = std::max<std::int64_t>(1, std::llround(length / spacing));
+  const auto pieces = std::max<std::int64_t>(closed ? 3 : 1, std::llround(length / spacing));
   samples.spacing = length / static_cast<double>(pieces);
   const std::int64_t count = closed ? pieces : pieces + 1;
   const std::size_t segments = closed ? points.size() : points.size() - 1;
@@ -82,6 +84,36 @@ std::vector<std::int32_t> torsion_maxima(std::span<const float> torsion, bool cl
       maxima.push_back(static_cast<std::int32_t>(i));
   }
   return maxima;
+}
+
+std::vector<float> torsion_prominences(std::span<const float> torsion, bool closed) {
+  const auto n = static_cast<std::int64_t>(torsion.size());
+  const std::int64_t laps = closed ? 2 : 1;
+  std::vector<float> passes(torsion.size(), kNoPass);
+  struct Step {
+    float height;
+    float lowest;  // between the step before and this one
+  };
+  std::vector<Step> descending;
+  for (const bool forwards : {true, false}) {
+    descending.clear();
+    for (std::int64_t k = 0; k < laps * n; ++k) {
+      const std::int64_t i = forwards ? k % n : n - 1 - k % n;
+      const float height = std::abs(torsion[i]);
+      float lowest = height;
+      while (!descending.empty() && descending.back().height <= height) {
+        lowest = std::min({lowest, descending.back().height, descending.back().lowest});
+        descending.pop_back();
+      }
+      // On closed contours the second lap knows all that lies behind.
+      if (!descending.empty()) passes[i] = std::max(passes[i], lowest);
+      descending.push_back({height, lowest});
+    }
+  }
+  std::vector<float> result(torsion.size());
+  for (std::int64_t i = 0; i < n; ++i)
+    result[i] = std::abs(torsion[i]) - (passes[i] == kNoPass ? 0 : passes[i]);
+  return result;
 }
 
 }  // namespace semigeo::kernels

@@ -21,7 +21,8 @@ struct ArcSamples {
 };
 
 /// Cuts a polyline into equal pieces as near to `spacing` as their number allows. An open one keeps
-/// both its ends; a closed one begins at its first point. Without length: one sample.
+/// both its ends; a closed one begins at its first point and has three samples at least. Without
+/// length: one sample.
 ArcSamples resample(std::span<const Eigen::Vector3d> points, bool closed, double spacing);
 
 /// Total length, with the way back to the first point if closed.
@@ -37,5 +38,9 @@ std::vector<float> torsion(std::span<const Eigen::Vector3d> samples, bool closed
 
 /// Samples whose |torsion| exceeds that of both neighbours. Source: thesis 5.7.
 std::vector<std::int32_t> torsion_maxima(std::span<const float> torsion, bool closed);
+
+/// How far |torsion| falls from each sample on the easier of the two ways to a higher one; all of
+/// it where there is none. Linear cost.
+std::vector<float> torsion_prominences(std::span<const float> torsion, bool closed);
 
 }  // namespace semigeo::kernels

@@ -28,7 +28,7 @@ kernels::LevelMesh rough_sphere(double noise) {
     mesh.normals.push_back(p.normalized());
     mesh.source.push_back(static_cast<std::int32_t>(mesh.source.size()));
   }
-  mesh.surface.points.clear();
+  mesh.initial_points = std::exchange(mesh.surface.points, {});
   return mesh;
 }
 

@@ -70,8 +70,8 @@ EvolvingSurface::EvolvingSurface(kernels::Surface surface, const EvolutionOption
   }
   mesh_.vertex_filled = std::move(origins.vertex_filled);
   mesh_.face_filled = std::move(origins.face_filled);
+  mesh_.initial_points = std::exchange(surface.points, {});
   mesh_.surface = std::move(surface);
-  std::vector<Eigen::Vector3f>().swap(mesh_.surface.points);
   target_faces_ = mesh_.surface.face_count();
   part_reference_ = measure_parts(mesh_, context_);
 
@@ -176,6 +176,12 @@ void EvolvingSurface::sharpen(std::int64_t count, const VertexAt& vertex_at,
 }
 
 LevelFields EvolvingSurface::advance(bool move) {
+  LevelFields fields = evaluate();
+  if (move) this->move();
+  return fields;
+}
+
+LevelFields EvolvingSurface::evaluate() {
   const std::int64_t n = vertex_count();
   LevelFields fields;
   fields.points.resize(n);
@@ -222,8 +228,10 @@ LevelFields EvolvingSurface::advance(bool move) {
     }
     context_.observer.worked(range.end - range.begin);
   });
-  if (!move) return fields;
+  return fields;
+}
 
+void EvolvingSurface::move() {
   mesh_.points.swap(next_points_);
   mesh_.normals.swap(next_normals_);
   variance_ += kernels::gaussian_filters().variance * step_ * step_;
@@ -233,7 +241,6 @@ LevelFields EvolvingSurface::advance(bool move) {
   if (options_.schedule == Schedule::octaves) set_step(std::max(first_step_, std::sqrt(variance_)));
   if (!options_.curved) angle_weighted_normals();
   prepare_faces();
-  return fields;
 }
 
 /// 5.1, scale factor. Differs: the thesis compares mean edge lengths, which noise makes longer.

@@ -89,14 +89,26 @@ class EvolvingSurface {
   EvolvingSurface(kernels::Surface surface, const EvolutionOptions& options,
                   const engine::RunContext& context, Origins origins = {});
 
-  /// Curvature of the current level; if `move`, the surface is then smoothed by the same patches,
-  /// if so wanted each part is rescaled about its centroid and the mesh rid of odd triangles and of
-  /// parts on which no patch was valid - but for the largest part -, and becomes the next level.
-  /// A surface that collapses altogether leaves a triangle or a tetrahedron in its place.
-  /// Results do not depend on the number of threads. Source: thesis 5.1, 5.3 - 5.6.
+  /// Curvature of the current level. Results do not depend on the number of threads.
+  /// Source: thesis 5.3, 5.4, 5.6.
+  LevelFields evaluate();
+
+  /// After `evaluate`: the surface, smoothed by the same patches, becomes the next level. If so
+  /// wanted each part is rescaled about its centroid and the mesh rid of odd triangles and of parts
+  /// on which no patch was valid, but for the largest part. A surface that collapses altogether
+  /// leaves a triangle or a tetrahedron in its place. Source: thesis 5.1, 5.4, 5.5.
+  void move();
+
+  /// Both, or the first only.
   LevelFields advance(bool move);
 
   std::int64_t vertex_count() const { return mesh_.vertex_count(); }
+  /// The current level: points in internal units, of which one is `unit` scan units.
+  const kernels::LevelMesh& mesh() const { return mesh_; }
+  double unit() const { return unit_; }
+  const EvolutionOptions& options() const { return options_; }
+  /// Between `evaluate` and `move`: (N) normals of the smoothed surface, unit or zero.
+  const std::vector<Eigen::Vector3f>& smoothed_normals() const { return next_normals_; }
   /// It has collapsed; what is left only marks the place.
   bool vanished() const { return vanished_; }
 

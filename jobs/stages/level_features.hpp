@@ -16,8 +16,10 @@ struct FeatureOptions {
 /// Maxima of curvature, zero-crossing contours, their torsion and its maxima on the level that
 /// `fields` were evaluated on; call before the surface moves on. Maxima are in the order of the
 /// level's rows, contours open ones first. |K| sigma^2 below 1e-6 and |H| sigma below 1e-5 are
-/// zero: what is flat has neither maxima nor contours. Runs on all workers; the result does not
-/// depend on the number of threads. Source: thesis 4.4, 5.6.1, 5.7.
+/// zero: what is flat has neither maxima nor contours. Contours run over the curved edges, straight
+/// ones only if the surface is evolved flat: chords have corners, and torsion is made of third
+/// derivatives. Runs on all workers; the result does not depend on the number of threads.
+/// Source: thesis 4.4, 5.6.1, 5.7.
 kernels::LevelFeatures find_features(const EvolvingSurface& surface, const LevelFields& fields,
                                      const FeatureOptions& options,
                                      const engine::RunContext& context);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "jobs/stages/evolving_surface.hpp"
+#include "jobs/stages/level_features.hpp"
 #include "kernels/surface_builder.hpp"
 #include "kernels/vertex_order.hpp"
 
@@ -15,6 +16,7 @@ struct EvolvedMesh {
   kernels::Surface surface;  ///< as built: connectivity, and points relative to `origin`
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   std::vector<LevelFields> levels;
+  std::vector<kernels::LevelFeatures> features;
 
   Eigen::Vector3d point(std::size_t level, std::size_t vertex) const {
     return origin + levels[level].points[vertex].cast<double>();
@@ -23,16 +25,20 @@ struct EvolvedMesh {
 
 /// Level 0 and `smoothings` more.
 inline EvolvedMesh evolve_mesh(kernels::TriangleMesh mesh, int smoothings,
-                               const EvolutionOptions& options = {}, int threads = 2) {
+                               const EvolutionOptions& options = {}, int threads = 2,
+                               const FeatureOptions& feature_options = {}) {
   engine::Workers workers(threads);
   engine::Observer observer;
   kernels::BuiltSurface built = kernels::build_surface(std::move(mesh));
-  EvolvedMesh result{std::move(built.surface), built.origin, {}};
+  EvolvedMesh result{std::move(built.surface), built.origin, {}, {}};
   const auto order = kernels::locality_order(result.surface);
-  EvolvingSurface evolving(kernels::reordered(result.surface, order), options,
-                           {workers, observer, {}}, {order, {}, {}});
+  const engine::RunContext context{workers, observer, {}};
+  EvolvingSurface evolving(kernels::reordered(result.surface, order), options, context,
+                           {order, {}, {}});
   for (int k = 0; k <= smoothings; ++k) {
-    LevelFields fields = evolving.advance(k < smoothings);
+    LevelFields fields = evolving.evaluate();
+    result.features.push_back(find_features(evolving, fields, feature_options, context));
+    if (k < smoothings) evolving.move();
     const std::vector<std::int32_t>& rows = *fields.stored_order;
     fields.points = kernels::gathered(fields.points, rows);
     fields.normals = kernels::gathered(fields.normals, rows);

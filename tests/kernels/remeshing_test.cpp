@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "kernels/geodesic.hpp"
 #include "kernels/surface_builder.hpp"
@@ -26,7 +27,7 @@ LevelMesh level_mesh(TriangleMesh mesh) {
   for (const auto& p : result.surface.points) result.points.push_back({p.x(), p.y(), p.z(), 0});
   for (std::int32_t v = 0; v < result.surface.vertex_count(); ++v)
     result.normals.push_back(angle_weighted_normal(result.surface, result.points, v));
-  result.surface.points.clear();
+  result.initial_points = std::exchange(result.surface.points, {});
   result.source.resize(result.points.size());
   std::iota(result.source.begin(), result.source.end(), 0);
   return result;
@@ -38,6 +39,7 @@ void expect_sound(const LevelMesh& mesh) {
   EXPECT_EQ(mesh.surface.outgoing.size(), n);
   EXPECT_EQ(mesh.normals.size(), n);
   EXPECT_EQ(mesh.source.size(), n);
+  EXPECT_EQ(mesh.initial_points.size(), n);
   ASSERT_EQ(mesh.surface.part.size(), n);
   for (const auto h : mesh.surface.outgoing) EXPECT_NE(h, kNone);
   // Parts as they are after any numbering anew, one range of vertices and of faces each.

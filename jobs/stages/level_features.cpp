@@ -1,0 +1,258 @@
+#include "jobs/stages/level_features.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "kernels/extrema.hpp"
+#include "kernels/quadratic_face.hpp"
+#include "kernels/torsion.hpp"
+#include "kernels/zero_crossings.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+using engine::IndexRange;
+using kernels::ArcPoint;
+using kernels::CurvatureField;
+using kernels::EdgePoint;
+using kernels::Feature;
+using kernels::FeatureKind;
+using kernels::SampledContours;
+
+constexpr std::int64_t kVertexBlock = 4096;
+constexpr std::int64_t kPeakBlock = 64;
+constexpr std::int64_t kContourBlock = 16;
+/// |K| sigma^2 and |H| sigma of a surface that is flat but for the rounding of its points.
+constexpr double kFlatGaussian = 1e-6;
+constexpr double kFlatMean = 1e-5;
+
+/// What `find(range, found)` appends for the blocks of [0, count), in the order of the blocks.
+template <typename Value, typename Find>
+std::vector<Value> collect(engine::Workers& workers, std::int64_t count, std::int64_t block,
+                           const Find& find) {
+  std::vector<std::vector<Value>> found((count + block - 1) / block);
+  workers.for_blocks(count, block,
+                     [&](IndexRange range) { find(range, found[range.begin / block]); });
+  std::vector<Value> all;
+  for (std::vector<Value>& some : found)
+    all.insert(all.end(), std::make_move_iterator(some.begin()),
+               std::make_move_iterator(some.end()));
+  return all;
+}
+
+/// A contour and the features on it.
+struct Contour {
+  std::vector<Eigen::Vector3f> points;
+  std::vector<float> torsion;
+  std::vector<std::int32_t> maxima;
+  std::vector<Feature> features;
+  bool closed = false;
+  double length = 0;
+};
+
+class Finder {
+ public:
+  Finder(const EvolvingSurface& surface, const LevelFields& fields, const FeatureOptions& options,
+         const engine::RunContext& context)
+      : surface_(surface.mesh().surface),
+        mesh_(surface.mesh()),
+        normals_(surface.smoothed_normals()),
+        fields_(fields),
+        workers_(context.workers),
+        curved_(surface.options().curved),
+        radius_(options.radius * fields.scale / surface.unit()),
+        row_(fields.stored_order->size()) {
+    const auto completeness = static_cast<float>(options.min_completeness);
+    const double scale = fields.scale;
+    gaussian_ = {fields.gaussian_curvature, fields.patch_completeness, completeness,
+                 static_cast<float>(kFlatGaussian / (scale * scale))};
+    mean_ = {fields.mean_curvature, fields.patch_completeness, completeness,
+             static_cast<float>(kFlatMean / scale)};
+    const std::vector<std::int32_t>& order = *fields.stored_order;
+    workers_.for_blocks(static_cast<std::int64_t>(order.size()), kVertexBlock,
+                        [&](IndexRange range) {
+                          for (auto i = range.begin; i < range.end; ++i)
+                            row_[order[i]] = static_cast<std::int32_t>(i);
+                        });
+  }
+
+  kernels::LevelFeatures find() {
+    kernels::LevelFeatures result;
+    // Parts of each are serial: four at once.
+    workers_.for_blocks(4, 1, [&](IndexRange range) {
+      const std::int64_t kind = range.begin % 2;
+      const CurvatureField& field = kind == 0 ? gaussian_ : mean_;
+      if (range.begin < 2)
+        result.of_kind[kind] = maxima(field);
+      else
+        contours(field, result.contours[kind], result.of_kind[2 + kind]);
+    });
+    return result;
+  }
+
+ private:
+  std::vector<Feature> maxima(const CurvatureField& field) const {
+    const auto n = static_cast<std::int64_t>(row_.size());
+    std::vector<std::int32_t> uphill(n);
+    std::vector<std::int32_t> peaks = collect<std::int32_t>(
+        workers_, n, kVertexBlock, [&](IndexRange range, std::vector<std::int32_t>& found) {
+          for (auto i = range.begin; i < range.end; ++i) {
+            const auto v = static_cast<std::int32_t>(i);
+            uphill[v] = kernels::uphill(surface_, field, v);
+            if (uphill[v] == v) found.push_back(v);
+          }
+        });
+    if (radius_ > 0)
+      peaks = collect<std::int32_t>(
+          workers_, static_cast<std::int64_t>(peaks.size()), kPeakBlock,
+          [&](IndexRange range, std::vector<std::int32_t>& found) {
+            kernels::GeodesicBall ball;
+            for (auto i = range.begin; i < range.end; ++i)
+              if (kernels::is_maximum(surface_, mesh_.points, field, peaks[i], radius_, ball))
+                found.push_back(peaks[i]);
+          });
+    if (peaks.empty()) return {};
+    std::sort(peaks.begin(), peaks.end(),
+              [&](std::int32_t a, std::int32_t b) { return row_[a] < row_[b]; });
+    const std::vector<float> prominences =
+        kernels::prominences(surface_, field, kernels::peaks_of(std::move(uphill)));
+    std::vector<Feature> features;
+    features.reserve(peaks.size());
+    for (const std::int32_t v : peaks) {
+      Feature feature = feature_at([v](const auto& values) { return values[v]; });
+      feature.vertex = row_[v];
+      feature.value = field.values[v];
+      feature.prominence = prominences[v];
+      features.push_back(feature);
+    }
+    return features;
+  }
+
+  /// What features of all kinds have; `at(values)` is a value there of those of all vertices.
+  template <typename At>
+  Feature feature_at(const At& at) const {
+    Feature feature;
+    feature.position = at(fields_.points);
+    feature.initial_position = at(mesh_.initial_points);
+    feature.normal = Eigen::Vector3f(at(normals_)).stableNormalized();
+    const float gaussian = at(fields_.gaussian_curvature);
+    const auto scale = static_cast<float>(fields_.scale);
+    feature.scale_free_gaussian = std::copysign(std::sqrt(std::abs(gaussian)) * scale, gaussian);
+    feature.scale_free_mean = at(fields_.mean_curvature) * scale;
+    return feature;
+  }
+
+  void contours(const CurvatureField& field, SampledContours& sampled,
+                std::vector<Feature>& features) const {
+    const std::vector<std::int32_t> faces = collect<std::int32_t>(
+        workers_, surface_.face_count(), kVertexBlock,
+        [&](IndexRange range, std::vector<std::int32_t>& found) {
+          kernels::find_crossing_faces(surface_, field, static_cast<std::int32_t>(range.begin),
+                                       static_cast<std::int32_t>(range.end), found);
+        });
+    const kernels::Contours traced = kernels::trace_contours(surface_, field, faces);
+    const std::vector<Contour> contours = collect<Contour>(
+        workers_, traced.count(), kContourBlock,
+        [&](IndexRange range, std::vector<Contour>& found) {
+          for (auto c = range.begin; c < range.end; ++c)
+            found.push_back(
+                contour(std::span(traced.points)
+                            .subspan(traced.offsets[c], traced.offsets[c + 1] - traced.offsets[c]),
+                        traced.closed[c] != 0));
+        });
+    sampled.offsets.push_back(0);
+    for (const Contour& contour : contours) {
+      for (const std::int32_t sample : contour.maxima)
+        sampled.maxima.push_back(sampled.offsets.back() + sample);
+      sampled.points.insert(sampled.points.end(), contour.points.begin(), contour.points.end());
+      sampled.torsion.insert(sampled.torsion.end(), contour.torsion.begin(), contour.torsion.end());
+      sampled.offsets.push_back(static_cast<std::int64_t>(sampled.points.size()));
+      sampled.closed.push_back(contour.closed ? 1 : 0);
+      sampled.length += contour.length;
+      features.insert(features.end(), contour.features.begin(), contour.features.end());
+    }
+  }
+
+  /// On the curved edge, where torsion is defined: chords of a bent surface have corners, whose
+  /// third derivative drowns that of the contour.
+  Eigen::Vector3d point_at(const EdgePoint& e) const {
+    const Eigen::Vector3f& p = fields_.points[e.positive];
+    const Eigen::Vector3f& q = fields_.points[e.negative];
+    Eigen::Vector3d point =
+        e.between(Eigen::Vector3d(p.cast<double>()), Eigen::Vector3d(q.cast<double>()));
+    if (!curved_) return point;
+    const Eigen::Vector4f bulge =
+        kernels::edge_bulge(p, q, fields_.normals[e.positive], fields_.normals[e.negative]);
+    return point + e.t * (1 - e.t) * bulge.head<3>().cast<double>();
+  }
+
+  Contour contour(std::span<const EdgePoint> crossings, bool closed) const {
+    const auto crossing = [&](const EdgePoint& e, const auto& values) {
+      return e.between(values[e.positive], values[e.negative]);
+    };
+    std::vector<Eigen::Vector3d> polyline;
+    polyline.reserve(crossings.size());
+    for (const EdgePoint& e : crossings) polyline.push_back(point_at(e));
+    const kernels::ArcSamples samples =
+        kernels::resample(polyline, closed, fields_.mean_edge_length);
+    const auto next = [&](const ArcPoint& p) {
+      return p.segment + 1 < static_cast<std::int32_t>(polyline.size()) ? p.segment + 1 : 0;
+    };
+    std::vector<Eigen::Vector3d> points;
+    points.reserve(samples.at.size());
+    for (const ArcPoint& p : samples.at)
+      points.push_back(polyline[p.segment] +
+                       p.fraction * (polyline[next(p)] - polyline[p.segment]));
+
+    Contour result;
+    result.closed = closed;
+    result.length = kernels::length_of(polyline, closed);
+    result.points.reserve(points.size());
+    for (const Eigen::Vector3d& p : points) result.points.push_back(p.cast<float>());
+    result.torsion = kernels::torsion(points, closed);
+    result.maxima = kernels::torsion_maxima(result.torsion, closed);
+    const std::vector<float> prominences = kernels::torsion_prominences(result.torsion, closed);
+    for (const std::int32_t sample : result.maxima) {
+      const ArcPoint& p = samples.at[sample];
+      const EdgePoint& from = crossings[p.segment];
+      const EdgePoint& to = crossings[next(p)];
+      Feature feature = feature_at([&](const auto& values) {
+        const auto a = crossing(from, values);
+        const auto b = crossing(to, values);
+        return std::decay_t<decltype(values[0])>(a + p.fraction * (b - a));
+      });
+      const EdgePoint& nearer = p.fraction < 0.5f ? from : to;
+      feature.vertex = row_[nearer.t < 0.5f ? nearer.positive : nearer.negative];
+      feature.position = result.points[sample];
+      feature.value = result.torsion[sample];
+      feature.prominence = prominences[sample];
+      result.features.push_back(feature);
+    }
+    return result;
+  }
+
+  const kernels::Surface& surface_;
+  const kernels::LevelMesh& mesh_;
+  const std::vector<Eigen::Vector3f>& normals_;
+  const LevelFields& fields_;
+  engine::Workers& workers_;
+  bool curved_;
+  double radius_;                  ///< internal units
+  std::vector<std::int32_t> row_;  ///< of each vertex
+  CurvatureField gaussian_;
+  CurvatureField mean_;
+};
+
+}  // namespace
+
+kernels::LevelFeatures find_features(const EvolvingSurface& surface, const LevelFields& fields,
+                                     const FeatureOptions& options,
+                                     const engine::RunContext& context) {
+  return Finder(surface, fields, options, context).find();
+}
+
+}  // namespace semigeo::jobs
