@@ -74,19 +74,21 @@ void compare(const Original& original, const Case& change, const ChangedMesh& ch
                                  return !changed.cut ||
                                         changed.cut->signedDistance(p) >= kReach * level.scale;
                                }};
-    for (int kind = 0; kind < kernels::kFeatureKinds; ++kind)
-      for (std::size_t r = 0; r < options.search.radii.size(); ++r)
-        rows.push_back({.mesh = original.name,
-                        .change = change.name,
-                        .kind = static_cast<kernels::FeatureKind>(kind),
-                        .level = static_cast<int>(k),
-                        .radius = options.search.radii[r],
-                        .mean_edge_length = original.mean_edge_length,
-                        .scale = level.scale,
-                        .changed_level = static_cast<int>(other),
-                        .changed_scale = levels[other].scale,
-                        .repeats = repeats(level.of_radius[r][kind],
-                                           levels[other].of_radius[r][kind], limits)});
+    for (int i = 0; i < kernels::kFeatureKinds; ++i) {
+      const auto kind = static_cast<kernels::FeatureKind>(i);
+      for (std::size_t r = 0; r < (has_radius(kind) ? options.search.radii.size() : 1); ++r)
+        rows.push_back(
+            {.mesh = original.name,
+             .change = change.name,
+             .kind = kind,
+             .level = static_cast<int>(k),
+             .radius = has_radius(kind) ? options.search.radii[r] : 0,
+             .mean_edge_length = original.mean_edge_length,
+             .scale = level.scale,
+             .changed_level = static_cast<int>(other),
+             .changed_scale = levels[other].scale,
+             .repeats = repeats(level.of_radius[r][i], levels[other].of_radius[r][i], limits)});
+    }
   }
 }
 
@@ -103,16 +105,16 @@ bool measure(const fs::path& path, const Options& options, const engine::RunCont
                     .mean_edge_length = kernels::mean_edge_length(built.surface),
                     .levels = {}};
   const int levels = options.levels + 1;
-  original.levels = scale_levels(std::move(built), {}, options.search, levels, 0, levels, context);
+  original.levels = scale_levels(built, {}, options.search, levels, 0, levels, context);
   MeshChanger changer(original.surface, options.change);
   for (const Case& change : all_cases()) {
     if (std::ranges::count(options.cases, change.name) == 0) continue;
     ChangedMesh changed = changer.changed(change);
-    kernels::BuiltSurface surface = kernels::build_surface(std::move(changed.mesh));
+    const kernels::BuiltSurface surface = kernels::build_surface(std::move(changed.mesh));
     if (surface.surface.face_count() == 0) continue;
     const auto found =
-        scale_levels(std::move(surface), changed.similarity, options.search, 1,
-                     original.levels.back().scale, kMaxLevelFactor * levels, context);
+        scale_levels(surface, changed.similarity, options.search, 1, original.levels.back().scale,
+                     kMaxLevelFactor * levels, context);
     compare(original, change, changed, found, options, rows);
   }
   return true;

@@ -15,7 +15,10 @@ struct Found {
   float prominence;
 };
 
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
 double share_within(std::span<const Found> found, double distance) {
+  if (found.empty()) return kNaN;
   const auto near =
       std::ranges::count_if(found, [distance](const Found& f) { return f.distance <= distance; });
   return static_cast<double>(near) / static_cast<double>(found.size());
@@ -65,7 +68,7 @@ Repeats repeats(std::span<const PlacedFeature> original, std::span<const PlacedF
   return {.features = std::ssize(found),
           .found = std::ssize(changed),
           .share = share_within(found, options.tolerance),
-          .chance = chance / static_cast<double>(found.size()),
+          .chance = found.empty() ? kNaN : chance / static_cast<double>(found.size()),
           .share_prominent = share_within(prominent_half(found), options.tolerance),
           .share_twice = share_within(found, 2 * options.tolerance),
           .share_scale = share_within(found, options.scale),

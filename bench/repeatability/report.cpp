@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <limits>
 #include <optional>
 
 #include "bench/support/quantile.hpp"
+#include "bench/support/quoted.hpp"
 
 namespace semigeo::repeatability {
 namespace {
@@ -21,6 +21,10 @@ constexpr const char* kCsvHeader =
     "mesh,case,kind,level,radius,mean_edge_length,scale,changed_level,changed_scale,features,"
     "features_changed,share,chance,share_prominent,share_2_edges,share_scale,"
     "median_distance_edges,median_miss_edges\n";
+
+const char* name_of(FeatureKind kind) {
+  return kernels::kFeatureKindNames[static_cast<int>(kind)];
+}
 
 /// Values in the order of their first appearance.
 template <typename Value, typename Get>
@@ -52,7 +56,8 @@ struct Summary {
 };
 
 Summary summary(std::span<const Row> rows, const std::string& change, const Key& key) {
-  Summary result{.key = key};
+  Summary result;
+  result.key = key;
   std::vector<const Repeats*> used;
   for (const Row& row : rows)
     if (row.change == change && key_of(row) == key) {
@@ -84,8 +89,8 @@ void print_case(std::span<const Row> rows, const std::string& change,
   std::printf("\n");
   for (const auto kind : distinct<FeatureKind>(rows, &Row::kind))
     for (const int level : distinct<int>(rows, &Row::level)) {
-      std::printf("%-18s %5d", kernels::kFeatureKindNames[static_cast<int>(kind)], level);
-      for (const double radius : radii) {
+      std::printf("%-18s %5d", name_of(kind), level);
+      for (const double radius : has_radius(kind) ? radii : std::vector{0.0}) {
         const Summary s = summary(rows, change, {kind, level, radius});
         std::printf(" | %3s (%3s) %9lld", percent(s.median.share).c_str(),
                     percent(s.median.chance).c_str(), static_cast<long long>(s.features));
@@ -99,15 +104,16 @@ void print_case(std::span<const Row> rows, const std::string& change,
 std::optional<Key> best_key(std::span<const Row> rows, const std::vector<std::string>& changes) {
   const auto meshes = std::ssize(distinct<std::string>(rows, &Row::mesh));
   std::optional<Key> best;
-  double best_gain = -std::numeric_limits<double>::infinity();
+  double best_gain = 0;
   for (const Key& key : distinct<Key>(rows, key_of)) {
     double gain = 0;
+    bool enough = true;
     for (const std::string& change : changes) {
       const Summary s = summary(rows, change, key);
-      if (2 * s.meshes < meshes) gain = -std::numeric_limits<double>::infinity();
-      gain += (s.median.share - s.median.chance) / static_cast<double>(changes.size());
+      enough = enough && s.meshes > 0 && 2 * s.meshes >= meshes;
+      gain += s.median.share - s.median.chance;
     }
-    if (gain <= best_gain) continue;
+    if (!enough || gain <= best_gain) continue;
     best_gain = gain;
     best = key;
   }
@@ -115,31 +121,25 @@ std::optional<Key> best_key(std::span<const Row> rows, const std::vector<std::st
 }
 
 void print_best(std::span<const Row> rows, const std::vector<std::string>& changes,
-                const std::string& name) {
+                const char* name) {
   const std::optional<Key> key = best_key(rows, changes);
   if (!key) {
-    std::printf("best kind and level, %s: too few features\n", name.c_str());
+    std::printf("best kind and level, %s: too few features\n", name);
     return;
   }
-  std::printf("best kind and level, %s: %s, level %d, radius %g:", name.c_str(),
-              kernels::kFeatureKindNames[static_cast<int>(key->kind)], key->level, key->radius);
+  std::printf("best kind and level, %s: %s, level %d", name, name_of(key->kind), key->level);
+  if (has_radius(key->kind)) std::printf(", radius %g", key->radius);
+  std::printf("\n");
   for (const std::string& change : changes) {
     const Summary s = summary(rows, change, *key);
     std::printf(
-        " %s%s %% (chance %s %%, more prominent half %s %%, within 2 edges %s %%, "
-        "misses at %.1f edges)%s",
-        changes.size() > 1 ? (change + " ").c_str() : "", percent(s.median.share).c_str(),
-        percent(s.median.chance).c_str(), percent(s.median.share_prominent).c_str(),
-        percent(s.median.share_twice).c_str(), s.median.median_miss,
-        change == changes.back() ? "\n" : ",");
+        "  %-16s %3s %% (chance %s %%), of the more prominent half %s %%, within 2 edges %s %%",
+        change.c_str(), percent(s.median.share).c_str(), percent(s.median.chance).c_str(),
+        percent(s.median.share_prominent).c_str(), percent(s.median.share_twice).c_str());
+    if (!std::isnan(s.median.median_miss))
+      std::printf("; misses at %.1f edges", s.median.median_miss);
+    std::printf("\n");
   }
-}
-
-/// A name within quotes, its own doubled.
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + '"';
 }
 
 }  // namespace
@@ -151,30 +151,33 @@ std::string csv(std::span<const Row> rows) {
     char cells[400];
     std::snprintf(cells, sizeof cells,
                   ",%s,%s,%d,%g,%.9g,%.9g,%d,%.9g,%lld,%lld,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g\n",
-                  row.change.c_str(), kernels::kFeatureKindNames[static_cast<int>(row.kind)],
-                  row.level, row.radius, row.mean_edge_length, row.scale, row.changed_level,
-                  row.changed_scale, static_cast<long long>(r.features),
-                  static_cast<long long>(r.found), r.share, r.chance, r.share_prominent,
-                  r.share_twice, r.share_scale, r.median_distance, r.median_miss);
-    text += quoted(row.mesh) + cells;
+                  row.change.c_str(), name_of(row.kind), row.level, row.radius,
+                  row.mean_edge_length, row.scale, row.changed_level, row.changed_scale,
+                  static_cast<long long>(r.features), static_cast<long long>(r.found), r.share,
+                  r.chance, r.share_prominent, r.share_twice, r.share_scale, r.median_distance,
+                  r.median_miss);
+    text += bench::quoted(row.mesh) + cells;
   }
   return text;
 }
 
 void print(std::span<const Row> rows) {
   const auto changes = distinct<std::string>(rows, &Row::change);
-  const auto radii = distinct<double>(rows, &Row::radius);
+  std::vector<double> radii;
+  for (const Row& row : rows)
+    if (has_radius(row.kind) && std::ranges::count(radii, row.radius) == 0)
+      radii.push_back(row.radius);
   std::printf(
       "Share of the features that come back, %% (by chance, %%), and their number, all meshes "
       "together.\nMedian over the meshes that have at least %lld.\n",
       static_cast<long long>(kFewest));
   for (const std::string& change : changes) print_case(rows, change, radii);
   std::printf("\n");
-  for (const std::string& change : changes) print_best(rows, {change}, change);
+  for (const std::string& change : changes) print_best(rows, {change}, change.c_str());
   std::vector<std::string> hard;
   for (const std::string& change : changes)
     if (change != "identity" && change != "rotated") hard.push_back(change);
-  if (hard.size() > 1) print_best(rows, hard, "all of these");
+  if (hard.size() > 1) print_best(rows, hard, "on average");
 }
 
 }  // namespace semigeo::repeatability

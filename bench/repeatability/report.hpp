@@ -14,8 +14,8 @@ struct Row {
   std::string mesh;
   std::string change;  ///< name of the case
   kernels::FeatureKind kind = kernels::FeatureKind::gaussian;
-  int level = 0;  ///< of the original
-  double radius = 0;
+  int level = 0;                ///< of the original
+  double radius = 0;            ///< in scales; 0 for torsion, which has none
   double mean_edge_length = 0;  ///< of the original
   double scale = 0;             ///< of that level
   int changed_level = 0;
@@ -23,7 +23,12 @@ struct Row {
   Repeats repeats;
 };
 
-/// A row a row.
+/// Whether maxima of this kind are compared within a radius.
+constexpr bool has_radius(kernels::FeatureKind kind) {
+  return kind == kernels::FeatureKind::gaussian || kind == kernels::FeatureKind::mean;
+}
+
+/// With a line of headings; quantities in the order of the members.
 std::string csv(std::span<const Row> rows);
 
 /// A table a case on stdout, and in the end what comes back best: median over the meshes.

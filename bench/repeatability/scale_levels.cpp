@@ -43,12 +43,14 @@ FeaturesByKind placed(const kernels::LevelFeatures& features, const Eigen::Vecto
 
 }  // namespace
 
-std::vector<ScaleLevel> scale_levels(kernels::BuiltSurface built, const Similarity& similarity,
-                                     const FeatureSearch& search, int levels, double last_scale,
-                                     int max_levels, const engine::RunContext& context) {
+std::vector<ScaleLevel> scale_levels(const kernels::BuiltSurface& built,
+                                     const Similarity& similarity, const FeatureSearch& search,
+                                     int levels, double last_scale, int max_levels,
+                                     const engine::RunContext& context) {
   std::vector<std::int32_t> order = kernels::locality_order(built.surface);
+  kernels::Surface ordered = kernels::reordered(built.surface, order);
   jobs::EvolvingSurface surface(
-      kernels::reordered(built.surface, order), search.evolution, context,
+      std::move(ordered), search.evolution, context,
       jobs::Origins{.vertex = std::move(order), .vertex_filled = {}, .face_filled = {}});
   std::vector<ScaleLevel> result;
   while (true) {

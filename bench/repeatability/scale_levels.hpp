@@ -35,8 +35,9 @@ struct FeatureSearch {
 
 /// Goes on until there are `levels` levels and the scale of the last is at least `last_scale`, but
 /// no longer than `max_levels`, or until the surface vanishes. `similarity` is undone.
-std::vector<ScaleLevel> scale_levels(kernels::BuiltSurface built, const Similarity& similarity,
-                                     const FeatureSearch& search, int levels, double last_scale,
-                                     int max_levels, const engine::RunContext& context);
+std::vector<ScaleLevel> scale_levels(const kernels::BuiltSurface& built,
+                                     const Similarity& similarity, const FeatureSearch& search,
+                                     int levels, double last_scale, int max_levels,
+                                     const engine::RunContext& context);
 
 }  // namespace semigeo::repeatability

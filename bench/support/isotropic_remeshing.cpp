@@ -1,9 +1,11 @@
 #include "bench/support/isotropic_remeshing.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 #include <vector>
 
 #include "bench/support/edit_mesh.hpp"
@@ -57,11 +59,17 @@ class IsotropicRemesher {
   Eigen::Vector3d point(Vertex v) const { return eigen(mesh_.point(v)); }
   double length(Edge e) const { return mesh_.calc_edge_length(e); }
 
-  /// New edges are looked at as well: they come last.
+  /// Longer ones first, about: to split a triangle's short side makes another long one. New edges
+  /// come last, and are looked at as well.
   void split_longer_than(double longest) {
-    for (std::size_t e = 0; e < mesh_.n_edges(); ++e) {
-      const Edge edge = mesh_.edge_handle(static_cast<unsigned>(e));
-      if (length(edge) > longest) mesh_.split(edge, mesh_.calc_edge_midpoint(edge));
+    double bound = 0;
+    for (const auto e : mesh_.edges()) bound = std::max(bound, length(e));
+    while (bound > longest) {
+      bound = std::max(bound / std::numbers::sqrt2, longest);
+      for (std::size_t e = 0; e < mesh_.n_edges(); ++e) {
+        const Edge edge = mesh_.edge_handle(static_cast<unsigned>(e));
+        if (length(edge) > bound) mesh_.split(edge, mesh_.calc_edge_midpoint(edge));
+      }
     }
   }
 
