@@ -39,6 +39,7 @@ struct Options {
   bool closed = false;
   int levels = 4;
   std::string schedule = "octaves";
+  std::string coordinates = "semigeodesic";
   std::vector<std::string> cases;
   double tolerance = 1;
   FeatureSearch search;
@@ -123,6 +124,9 @@ bool measure(const fs::path& path, const Options& options, const engine::RunCont
 int run(Options options) {
   options.search.evolution.schedule =
       options.schedule == "octaves" ? jobs::Schedule::octaves : jobs::Schedule::uniform;
+  options.search.evolution.coordinates = options.coordinates == "polar"
+                                             ? kernels::Coordinates::polar
+                                             : kernels::Coordinates::semigeodesic;
   engine::Workers workers(options.threads);
   engine::Observer observer;
   const engine::RunContext context{workers, observer, {}};
@@ -159,6 +163,8 @@ void add_options(CLI::App& app, Options& options) {
       ->check(CLI::IsMember(names));
   app.add_option("--schedule", options.schedule, "How the scale grows from level to level")
       ->check(CLI::IsMember({"uniform", "octaves"}));
+  app.add_option("--coordinates", options.coordinates)
+      ->check(CLI::IsMember({"semigeodesic", "polar"}));
   app.add_option("--levels", options.levels, "Smoothings of the original; the others follow")
       ->check(CLI::Range(0, 999));
   app.add_option("--radius", options.search.radii,
