@@ -5,47 +5,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string_view>
+
+#include "io/element_type.hpp"
 
 namespace semigeo::io {
-
-/// Element types of stored arrays, all little endian.
-enum class ElementType { float32, float64, int32, int64, uint8 };
-
-constexpr std::int64_t size_of(ElementType type) {
-  switch (type) {
-    case ElementType::float32:
-    case ElementType::int32:
-      return 4;
-    case ElementType::float64:
-    case ElementType::int64:
-      return 8;
-    case ElementType::uint8:
-      return 1;
-  }
-  return 0;
-}
-
-constexpr std::string_view name_of(ElementType type) {
-  switch (type) {
-    case ElementType::float32:
-      return "float32";
-    case ElementType::float64:
-      return "float64";
-    case ElementType::int32:
-      return "int32";
-    case ElementType::int64:
-      return "int64";
-    case ElementType::uint8:
-      return "uint8";
-  }
-  return "?";
-}
 
 /// Rows somewhere in memory and how a dataset stores them: shape (rows) when `columns` is 1, else
 /// (rows, columns). Owns nothing: what it points to must outlive it. The types may differ for
 /// int32 -> int64 and float64 -> float32, which are converted chunk by chunk, so that no second
-/// copy of an array is ever in memory.
+/// copy of an array is ever in memory. Records in memory may end in padding, which is not stored.
 struct ArrayView {
   ElementType memory_type = ElementType::float32;
   ElementType stored_type = ElementType::float32;

@@ -22,6 +22,13 @@ Hdf5File::Array open_checked(const Hdf5File& file, const std::string& path, int 
   return array;
 }
 
+void require_type(const Hdf5File::Array& array, ElementType type) {
+  const ElementType found = array.shape().type;
+  if (found != type)
+    array.file().refuse(array.path(), "holds " + std::string(name_of(found)) + " instead of " +
+                                          std::string(name_of(type)));
+}
+
 template <typename Stored, typename Result>
 void append_rows(const Hdf5File::Array& array, std::vector<Result>& values) {
   for_each_chunk(array, [&](std::span<const std::byte> rows) {
@@ -40,9 +47,7 @@ std::vector<Value> read_values(const Hdf5File& file, const std::string& path, in
   const ElementType found = array.shape().type;
   const bool widens =
       type == ElementType::int64 && (found == ElementType::int32 || found == ElementType::uint8);
-  if (found != type && !widens)
-    file.refuse(
-        path, "holds " + std::string(name_of(found)) + " instead of " + std::string(name_of(type)));
+  if (!widens) require_type(array, type);
   std::vector<Value> values;
   values.reserve(static_cast<std::size_t>(array.shape().rows * columns));
   if constexpr (std::is_same_v<Value, std::int64_t>)
@@ -83,6 +88,18 @@ std::vector<double> read_doubles(const Hdf5File& file, const std::string& path, 
 std::vector<std::int64_t> read_integers(const Hdf5File& file, const std::string& path,
                                         int columns) {
   return read_values<std::int64_t>(file, path, columns, ElementType::int64);
+}
+
+std::vector<std::byte> read_records(const Hdf5File& file, const std::string& path,
+                                    ElementType type) {
+  const Hdf5File::Array array = open_checked(file, path, 1);
+  require_type(array, type);
+  std::vector<std::byte> records;
+  records.reserve(static_cast<std::size_t>(array.shape().rows * array.shape().row_bytes()));
+  for_each_chunk(array, [&](std::span<const std::byte> rows) {
+    records.insert(records.end(), rows.begin(), rows.end());
+  });
+  return records;
 }
 
 }  // namespace semigeo::io

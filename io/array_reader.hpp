@@ -23,4 +23,8 @@ std::vector<double> read_doubles(const Hdf5File& file, const std::string& path, 
 /// From int32 or int64.
 std::vector<std::int64_t> read_integers(const Hdf5File& file, const std::string& path, int columns);
 
+/// The rows of records as they are stored, packed.
+std::vector<std::byte> read_records(const Hdf5File& file, const std::string& path,
+                                    ElementType type);
+
 }  // namespace semigeo::io

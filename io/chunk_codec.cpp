@@ -9,6 +9,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 namespace semigeo::io {
 namespace {
@@ -46,12 +47,22 @@ void convert_rows(const ArrayView& view, std::int64_t first, std::int64_t count,
   }
 }
 
+void gather_records(const ArrayView& view, std::int64_t first, std::int64_t count, std::byte* out) {
+  const auto size = static_cast<std::size_t>(size_of(view.memory_type));
+  for (std::int64_t i = first; i < first + count; ++i, out += size) {
+    const std::int64_t row = view.row_order.empty() ? i : view.row_order[i];
+    std::memcpy(out, view.data + row * view.row_stride, size);
+  }
+}
+
 void gather_rows(const ArrayView& view, std::int64_t first, std::int64_t count, std::byte* out) {
   using enum ElementType;
   if (view.memory_type == view.stored_type) {
     const std::int64_t row_bytes = view.columns * size_of(view.memory_type);
     if (view.row_order.empty() && view.row_stride == row_bytes) {
       std::memcpy(out, view.data + first * row_bytes, static_cast<std::size_t>(count * row_bytes));
+    } else if (view.memory_type == feature) {
+      gather_records(view, first, count, out);
     } else if (size_of(view.memory_type) == 4) {
       convert_rows<std::uint32_t, std::uint32_t>(view, first, count, out);
     } else if (size_of(view.memory_type) == 8) {
@@ -69,16 +80,37 @@ void gather_rows(const ArrayView& view, std::int64_t first, std::int64_t count, 
   }
 }
 
-template <std::size_t size>
-void shuffle(const std::byte* in, std::size_t elements, std::byte* out) {
-  for (std::size_t i = 0; i < elements; ++i)
-    for (std::size_t b = 0; b < size; ++b) out[b * elements + i] = in[i * size + b];
+// Calls `action` with the size of an element, as a constant where that makes the loops fast.
+template <typename Action>
+void with_known_size(std::size_t size, const Action& action) {
+  switch (size) {
+    case 1:
+      return action(std::integral_constant<std::size_t, 1>());
+    case 4:
+      return action(std::integral_constant<std::size_t, 4>());
+    case 8:
+      return action(std::integral_constant<std::size_t, 8>());
+    default:
+      return action(size);
+  }
 }
 
-template <std::size_t size>
-void unshuffle(const std::byte* in, std::size_t elements, std::byte* out) {
-  for (std::size_t i = 0; i < elements; ++i)
-    for (std::size_t b = 0; b < size; ++b) out[i * size + b] = in[b * elements + i];
+void shuffle(std::span<const std::byte> in, std::size_t element_size, std::byte* out) {
+  const auto planes = [&](auto size) {
+    const std::size_t elements = in.size() / size;
+    for (std::size_t i = 0; i < elements; ++i)
+      for (std::size_t b = 0; b < size; ++b) out[b * elements + i] = in[i * size + b];
+  };
+  with_known_size(element_size, planes);
+}
+
+void unshuffle(std::span<const std::byte> in, std::size_t element_size, std::byte* out) {
+  const auto rows = [&](auto size) {
+    const std::size_t elements = in.size() / size;
+    for (std::size_t i = 0; i < elements; ++i)
+      for (std::size_t b = 0; b < size; ++b) out[i * size + b] = in[b * elements + i];
+  };
+  with_known_size(element_size, rows);
 }
 
 // Appends what HDF5's fletcher32 filter appends: the checksum, least significant byte first.
@@ -224,22 +256,13 @@ EncodedChunk encode_rows(const ArrayShape& shape, std::span<const std::byte> row
   }
   // One allocation for the shuffled bytes and the compressed ones, which are useful only if fewer.
   const auto scratch = std::make_unique_for_overwrite<std::byte[]>(2 * size);
-  const std::size_t elements = size / static_cast<std::size_t>(size_of(shape.type));
-  switch (size_of(shape.type)) {
-    case 4:
-      shuffle<4>(rows.data(), elements, scratch.get());
-      break;
-    case 8:
-      shuffle<8>(rows.data(), elements, scratch.get());
-      break;
-    default:
-      std::memcpy(scratch.get(), rows.data(), size);
-  }
+  const auto element_size = static_cast<std::size_t>(size_of(shape.type));
+  shuffle(rows, element_size, scratch.get());
   const Compressor compressor(libdeflate_alloc_compressor(kFastest));
   if (!compressor) throw std::bad_alloc();
   const bool real = shape.type == ElementType::float32 || shape.type == ElementType::float64;
   const std::span<const std::byte> shuffled(scratch.get(), size);
-  const std::size_t noise = real ? noise_in_front(compressor.get(), shuffled, size / elements) : 0;
+  const std::size_t noise = real ? noise_in_front(compressor.get(), shuffled, element_size) : 0;
   const std::size_t packed = zlib_stream(compressor.get(), shuffled, noise, scratch.get() + size);
   if (packed > 0) {
     chunk.bytes = with_checksum({scratch.get() + size, packed});
@@ -273,15 +296,11 @@ bool decode_chunk(const ArrayShape& shape, std::span<const std::byte> bytes,
     return true;
   }
   if (filter_mask != 0) return false;  // no writer of this format skips one filter alone
-  if (size_of(shape.type) == 1) return inflate(body, rows);
+  const auto element_size = static_cast<std::size_t>(size_of(shape.type));
+  if (element_size == 1) return inflate(body, rows);
   const auto shuffled = std::make_unique_for_overwrite<std::byte[]>(rows.size());
   if (!inflate(body, {shuffled.get(), rows.size()})) return false;
-  const std::size_t elements = rows.size() / static_cast<std::size_t>(size_of(shape.type));
-  if (size_of(shape.type) == 4) {
-    unshuffle<4>(shuffled.get(), elements, rows.data());
-  } else {
-    unshuffle<8>(shuffled.get(), elements, rows.data());
-  }
+  unshuffle({shuffled.get(), rows.size()}, element_size, rows.data());
   return true;
 }
 

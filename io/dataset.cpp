@@ -10,20 +10,13 @@
 namespace semigeo::io {
 namespace {
 
-template <typename Value>
-Value attribute(const Hdf5File& file, const std::string& object, const char* name) {
-  const AttributeValue value = file.read_attribute(object, name);
-  if (const Value* known = std::get_if<Value>(&value)) return *known;
-  file.refuse(object, std::string("its attribute ") + name + " has the wrong type");
-}
-
 // Of a dataset of ours, whatever its state.
 void require_format(const Hdf5File& file) {
   if (!file.has_attribute("/", "format") || !file.has_attribute("/", "format_version") ||
-      attribute<std::string>(file, "/", "format") != kDatasetFormat)
+      file.read_attribute_as<std::string>("/", "format") != kDatasetFormat)
     throw Error(file.path(), "", "is an HDF5 file but not a semigeo dataset",
                 "give a file that `semigeo run` made");
-  const auto version = attribute<std::int64_t>(file, "/", "format_version");
+  const auto version = file.read_attribute_as<std::int64_t>("/", "format_version");
   if (version != kDatasetFormatVersion)
     throw Error(file.path(), "",
                 "has dataset format " + std::to_string(version) + ", this program reads " +
@@ -32,7 +25,8 @@ void require_format(const Hdf5File& file) {
 }
 
 bool is_complete(const Hdf5File& file) {
-  return file.has_attribute("/", "complete") && attribute<std::int64_t>(file, "/", "complete") == 1;
+  return file.has_attribute("/", "complete") &&
+         file.read_attribute_as<std::int64_t>("/", "complete") == 1;
 }
 
 std::optional<std::string> text_of_complete(const std::filesystem::path& path, const char* name) {
@@ -40,7 +34,7 @@ std::optional<std::string> text_of_complete(const std::filesystem::path& path, c
     const Hdf5File file = Hdf5File::open(path);
     require_format(file);
     if (!is_complete(file)) return std::nullopt;
-    return attribute<std::string>(file, "/", name);
+    return file.read_attribute_as<std::string>("/", name);
   } catch (const Error&) {
     return std::nullopt;
   }
@@ -70,7 +64,7 @@ Dataset::Dataset(const std::filesystem::path& path) : file_(Hdf5File::open(path)
   header_.length_unit = text("length_unit");
   header_.repairs_json = text("repairs");
   header_.preparation_json = text("preparation");
-  const auto origin = attribute<std::vector<double>>(file_, "/", "origin");
+  const auto origin = file_.read_attribute_as<std::vector<double>>("/", "origin");
   if (origin.size() != 3) file_.refuse("/", "its attribute origin must have three values");
   std::ranges::copy(origin, header_.origin.begin());
   const std::vector<Hdf5Link> levels = file_.links("/levels");
@@ -85,7 +79,7 @@ Dataset::Dataset(const std::filesystem::path& path) : file_(Hdf5File::open(path)
 }
 
 std::string Dataset::text(const char* name) const {
-  return attribute<std::string>(file_, "/", name);
+  return file_.read_attribute_as<std::string>("/", name);
 }
 
 LevelInfo Dataset::level(int level) const {
@@ -94,14 +88,14 @@ LevelInfo Dataset::level(int level) const {
                 "the levels are 0 to " + std::to_string(level_count_ - 1));
   const std::string path = level_path(level);
   LevelInfo info;
-  info.iteration = attribute<std::int64_t>(file_, path, "iteration");
-  info.step = attribute<double>(file_, path, "step");
-  info.scale = attribute<double>(file_, path, "scale");
-  info.mean_edge_length = attribute<double>(file_, path, "mean_edge_length");
-  info.parts = attribute<std::int64_t>(file_, path, "parts");
-  info.shortest_side = attribute<double>(file_, path, "shortest_side");
+  info.iteration = file_.read_attribute_as<std::int64_t>(path, "iteration");
+  info.step = file_.read_attribute_as<double>(path, "step");
+  info.scale = file_.read_attribute_as<double>(path, "scale");
+  info.mean_edge_length = file_.read_attribute_as<double>(path, "mean_edge_length");
+  info.parts = file_.read_attribute_as<std::int64_t>(path, "parts");
+  info.shortest_side = file_.read_attribute_as<double>(path, "shortest_side");
   for (const LevelCount& count : kLevelCounts)
-    info.remeshed.*count.count = attribute<std::int64_t>(file_, path, count.name);
+    info.remeshed.*count.count = file_.read_attribute_as<std::int64_t>(path, count.name);
   info.vertices = file_.open_array(path + "/points").shape().rows;
   info.triangles = file_.open_array(path + "/triangles").shape().rows;
   for (const LevelArray& array : kLevelArrays) {
@@ -114,6 +108,7 @@ LevelInfo Dataset::level(int level) const {
       file_.refuse(name, "has not the type or shape that a level's " + std::string(array.name) +
                              " must have");
   }
+  info.features = check_features(file_, path);
   return info;
 }
 
@@ -133,8 +128,25 @@ std::vector<std::int64_t> Dataset::read_integers(int level, std::string_view nam
   return io::read_integers(file_, level_path(level) + "/" + array->name, array->columns);
 }
 
+std::vector<kernels::Feature> Dataset::read_features(int level, kernels::FeatureKind kind) const {
+  return io::read_features(file_, level_path(level), kind, this->level(level).vertices);
+}
+
+kernels::SampledContours Dataset::read_contours(int level, kernels::FeatureKind kind) const {
+  this->level(level);
+  return io::read_contours(file_, level_path(level), kind);
+}
+
+Selection Dataset::selection() const {
+  return read_selection(file_, level_count_);
+}
+
 void Dataset::verify() const {
-  for (int k = 0; k < level_count_; ++k) level(k);
+  const Selection selected = selection();
+  for (int k = 0; k < level_count_; ++k)
+    if (level(k).features.total() != selected.feature_counts[k])
+      file_.refuse("/selection/feature_counts",
+                   "does not count the features of level " + std::to_string(k));
   check_vtkhdf(file_);
   const std::string found = content_digest(file_);
   if (found != digest_)

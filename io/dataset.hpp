@@ -8,13 +8,16 @@
 #include <vector>
 
 #include "io/dataset_format.hpp"
+#include "io/feature_tables.hpp"
 #include "io/hdf5.hpp"
+#include "io/selection.hpp"
 
 namespace semigeo::io {
 
 struct LevelInfo : LevelAttributes {
   std::int64_t vertices = 0;
   std::int64_t triangles = 0;
+  FeatureCounts features;
 };
 
 /// Reads a dataset (io/DATASET.md). Every failure is an Error that names the file and the object.
@@ -44,8 +47,15 @@ class Dataset {
   /// triangles (3 F), source_vertex (N), part (N), vertex_filled (N), face_filled (F).
   std::vector<std::int64_t> read_integers(int level, std::string_view name) const;
 
+  /// Error also if a feature is at a vertex that the level does not have.
+  std::vector<kernels::Feature> read_features(int level, kernels::FeatureKind kind) const;
+  /// Contours K = 0 (gaussian) or H = 0 (mean). Error also if they are not one after the other,
+  /// or a maximum is at a point that does not exist.
+  kernels::SampledContours read_contours(int level, kernels::FeatureKind kind) const;
+  Selection selection() const;
+
   /// Reads everything: every chunk against its checksum, all of it against the digest, every level
-  /// for completeness, /VTKHDF for conformance. Memory: one chunk.
+  /// for completeness, /selection against the levels, /VTKHDF for conformance. Memory: one chunk.
   void verify() const;
 
  private:

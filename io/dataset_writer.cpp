@@ -46,6 +46,7 @@ DatasetWriter::DatasetWriter(const std::filesystem::path& final_path, const Data
 }
 
 void DatasetWriter::begin_level() {
+  if (selected_) throw std::invalid_argument("the selection comes after the last level");
   if (std::exchange(level_begun_, true)) return;
   if (steps_.size() >= kMostLevels) throw std::invalid_argument("too many levels");
   file_.create_group(level_path(static_cast<std::int64_t>(steps_.size())));
@@ -109,6 +110,8 @@ void DatasetWriter::write_level(const LevelAttributes& attributes, const Encoded
     write(level, format_of("principal_direction_1"), fields.principal->direction_1, vertices_);
     write(level, format_of("principal_direction_2"), fields.principal->direction_2, vertices_);
   }
+  write_features(file_, level, fields.features);
+  feature_counts_.push_back(counts_of(fields.features).total());
   if (!connectivity_pending_)
     for (const LevelArray& array : kLevelArrays)
       if (array.connectivity && (filled_ || array.presence != Presence::filled))
@@ -124,8 +127,19 @@ void DatasetWriter::write_level(const LevelAttributes& attributes, const Encoded
   level_begun_ = false;
 }
 
-std::string DatasetWriter::finish() {
+void DatasetWriter::write_selection(const Selection& selection) {
   if (steps_.empty() || level_begun_) throw std::invalid_argument("the last level is not complete");
+  if (selected_) throw std::invalid_argument("a dataset has one selection");
+  if (selection.feature_counts != feature_counts_ ||
+      selection.smoothed.size() != feature_counts_.size() || selection.level < 0 ||
+      selection.level >= static_cast<std::int64_t>(feature_counts_.size()))
+    throw std::invalid_argument("the selection does not fit the levels");
+  io::write_selection(file_, selection, compression_);
+  selected_ = true;
+}
+
+std::string DatasetWriter::finish() {
+  if (!selected_) throw std::invalid_argument("the last level or the selection was not written");
   write_vtkhdf(file_, vtkhdf_layout(steps_), compression_);
   std::string digest = file_.digest().hex();
   Hdf5File& file = file_.file();

@@ -7,6 +7,8 @@
 #include "io/atomic_file.hpp"
 #include "io/content_digest.hpp"
 #include "io/dataset_format.hpp"
+#include "io/feature_tables.hpp"
+#include "io/selection.hpp"
 #include "io/vtkhdf.hpp"
 
 namespace semigeo::io {
@@ -36,6 +38,7 @@ struct EncodedFields {
   EncodedArray gaussian_curvature;  ///< float32 (N), length^-2
   EncodedArray mean_curvature;      ///< float32 (N), length^-1
   EncodedArray patch_completeness;  ///< float32 (N), 1 = whole patch, 0 = invalid
+  EncodedFeatures features;
   std::optional<EncodedPrincipal> principal = {};  ///< in every level or in none
 };
 
@@ -56,9 +59,12 @@ class DatasetWriter {
   /// The next level, from 0 on.
   void write_level(const LevelAttributes& attributes, const EncodedFields& fields);
 
+  /// After the last level; its counts must be those of the levels' features.
+  void write_selection(const Selection& selection);
+
   /// Writes /VTKHDF, the content digest and `complete`, forces the file to the disk, reads all of
   /// it back and compares, writes the XDMF sidecar and gives the file its name. Returns the
-  /// content digest. At least one level must have been written.
+  /// content digest. At least one level and the selection must have been written.
   std::string finish();
 
  private:
@@ -70,6 +76,8 @@ class DatasetWriter {
   DigestedFile file_;  // after target_, so that it is closed before its name is removed
   Compression compression_;
   std::vector<VtkhdfStep> steps_;
+  std::vector<std::int64_t> feature_counts_;
+  bool selected_ = false;
   bool filled_ = false;
   bool level_begun_ = false;
   bool connectivity_pending_ = false;

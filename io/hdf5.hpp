@@ -94,6 +94,13 @@ class Hdf5File {
   std::uint64_t address(const std::string& path) const;
   std::vector<std::string> attribute_names(const std::string& object) const;
   AttributeValue read_attribute(const std::string& object, const std::string& name) const;
+  /// The same where only this type will do; Error if it has another.
+  template <typename Value>
+  Value read_attribute_as(const std::string& object, const std::string& name) const {
+    const AttributeValue value = read_attribute(object, name);
+    if (const Value* known = std::get_if<Value>(&value)) return *known;
+    refuse(object, "its attribute " + name + " has the wrong type");
+  }
   /// As io::attribute_type, or "unsupported".
   std::string attribute_type(const std::string& object, const std::string& name) const;
 

@@ -12,7 +12,7 @@ namespace {
 constexpr std::int64_t kLargestChunk = 16 * 1024 * 1024;  // ours have 256 KiB
 constexpr unsigned kHighestDeflateLevel = 9;
 
-hid_t hdf5_type(ElementType type) {
+hid_t number_type(ElementType type) {
   switch (type) {
     case ElementType::float32:
       return H5T_IEEE_F32LE;
@@ -24,14 +24,38 @@ hid_t hdf5_type(ElementType type) {
       return H5T_STD_I64LE;
     case ElementType::uint8:
       return H5T_STD_U8LE;
+    case ElementType::feature:
+      break;
   }
   return H5I_INVALID_HID;
+}
+
+// Packed, in the order of the members.
+Hdf5Handle record_type(std::span<const RecordMember> members, std::int64_t size) {
+  Hdf5Handle record(H5Tcreate(H5T_COMPOUND, static_cast<std::size_t>(size)), H5Tclose);
+  std::size_t offset = 0;
+  for (const RecordMember& member : members) {
+    const hid_t number = number_type(member.type);
+    const auto columns = static_cast<hsize_t>(member.columns);
+    const Hdf5Handle type(columns == 1 ? H5Tcopy(number) : H5Tarray_create2(number, 1, &columns),
+                          H5Tclose);
+    H5Tinsert(record.get(), member.name, offset, type.get());
+    offset += H5Tget_size(type.get());
+  }
+  return record;
+}
+
+Hdf5Handle hdf5_type(ElementType type) {
+  if (type == ElementType::feature) return record_type(kFeatureMembers, size_of(type));
+  return {H5Tcopy(number_type(type)), H5Tclose};
 }
 
 std::optional<ElementType> element_type(hid_t type) {
   using enum ElementType;
   for (const ElementType known : {float32, float64, int32, int64, uint8})
-    if (H5Tequal(type, hdf5_type(known)) > 0) return known;
+    if (H5Tequal(type, number_type(known)) > 0) return known;
+  if (H5Tget_class(type) == H5T_COMPOUND && H5Tequal(type, hdf5_type(feature).get()) > 0)
+    return feature;
   return std::nullopt;
 }
 
@@ -84,7 +108,7 @@ void Hdf5File::write_array(const std::string& path, const EncodedArray& array) {
     H5Pset_fletcher32(properties.get());
   }
   const Hdf5Handle space = make_space(shape.rows, shape.columns);
-  Hdf5Handle set(checked(H5Dcreate2(file, path.c_str(), hdf5_type(shape.type), space.get(),
+  Hdf5Handle set(checked(H5Dcreate2(file, path.c_str(), hdf5_type(shape.type).get(), space.get(),
                                     H5P_DEFAULT, properties.get(), H5P_DEFAULT),
                          path, "create the dataset"),
                  H5Dclose);
@@ -122,8 +146,8 @@ void Hdf5File::write_virtual(const std::string& path, ElementType type, int colu
     first += piece.rows;
   }
   H5Sselect_all(space.get());
-  Hdf5Handle set(checked(H5Dcreate2(file, path.c_str(), hdf5_type(type), space.get(), H5P_DEFAULT,
-                                    properties.get(), H5P_DEFAULT),
+  Hdf5Handle set(checked(H5Dcreate2(file, path.c_str(), hdf5_type(type).get(), space.get(),
+                                    H5P_DEFAULT, properties.get(), H5P_DEFAULT),
                          path, "create the virtual dataset"),
                  H5Dclose);
   checked(set.close(), path, "close the virtual dataset");
@@ -140,8 +164,8 @@ std::vector<std::byte> Hdf5File::read_through_library(const std::string& path) c
   const Array array = open_array(path);
   std::vector<std::byte> bytes(
       static_cast<std::size_t>(array.shape_.rows * array.shape_.row_bytes()));
-  checked(H5Dread(array.handle_.get(), hdf5_type(array.shape_.type), H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                  bytes.data()),
+  checked(H5Dread(array.handle_.get(), hdf5_type(array.shape_.type).get(), H5S_ALL, H5S_ALL,
+                  H5P_DEFAULT, bytes.data()),
           path, "read the dataset");
   return bytes;
 }

@@ -1,21 +1,51 @@
 #include "kernels/extrema.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
 namespace semigeo::kernels {
+namespace {
+
+/// Calls test(w) for the neighbours of v until it returns true. result: whether it did.
+template <typename Test>
+bool any_neighbour(const Surface& surface, std::int32_t v, const Test& test) {
+  const std::int32_t start = surface.outgoing[v];
+  for (std::int32_t h = start;;) {
+    if (test(surface.target(h))) return true;
+    const std::int32_t following = surface.ccw(h);
+    if (following == kNone) return test(surface.origin(prev(h)));
+    if (following == start) return false;
+    h = following;
+  }
+}
+
+/// Whether two edges no longer than `radius` together lead to a comparable vertex that is higher.
+/// Along the surface it is not farther; most that are no maximum are found out here, at a tenth of
+/// the cost of a ball.
+bool outdone_two_edges_away(const Surface& surface, std::span<const Eigen::Vector4f> points,
+                            const CurvatureField& field, std::int32_t v, double radius) {
+  const auto length = [&](std::int32_t a, std::int32_t b) {
+    return (points[b] - points[a]).cast<double>().norm();
+  };
+  return any_neighbour(surface, v, [&](std::int32_t u) {
+    const double rest = radius - length(v, u);
+    return rest > 0 && any_neighbour(surface, u, [&](std::int32_t w) {
+             return w != v && field.comparable(v, w) && field.higher(w, v) && length(u, w) <= rest;
+           });
+  });
+}
+
+}  // namespace
 
 std::int32_t uphill(const Surface& surface, const CurvatureField& field, std::int32_t v) {
   if (!field.comparable(v, v)) return kNone;
   std::int32_t best = v;
-  const std::int32_t start = surface.outgoing[v];
-  std::int32_t h = start;
-  do {
-    for (const std::int32_t w : {surface.target(h), surface.origin(prev(h))})
-      if (field.comparable(v, w) && field.higher(w, best)) best = w;
-    h = surface.ccw(h);
-  } while (h != kNone && h != start);
+  any_neighbour(surface, v, [&](std::int32_t w) {
+    if (field.comparable(v, w) && field.higher(w, best)) best = w;
+    return false;
+  });
   return best;
 }
 
@@ -23,6 +53,7 @@ bool is_maximum(const Surface& surface, std::span<const Eigen::Vector4f> points,
                 const CurvatureField& field, std::int32_t v, double radius, GeodesicBall& ball) {
   if (uphill(surface, field, v) != v) return false;
   if (!(radius > 0)) return true;
+  if (outdone_two_edges_away(surface, points, field, v, radius)) return false;
   bool highest = true;
   ball.grow(surface, points, v, radius, [&](std::int32_t w, double) {
     highest = w == v || !field.comparable(v, w) || field.higher(v, w);
@@ -48,13 +79,10 @@ std::vector<std::int32_t> peaks_of(std::vector<std::int32_t> uphill) {
 
 std::vector<float> prominences(const Surface& surface, const CurvatureField& field,
                                std::span<const std::int32_t> peaks) {
-  // Passes: edges between the slopes of two peaks, as high as their lower end.
-  struct Pass {
-    float height;
-    std::int32_t first;
-    std::int32_t second;
-  };
-  std::vector<Pass> passes;
+  // Passes: edges between the slopes of two peaks, as high as their lower end. Highest first, as
+  // one number each: the height, whose bits are in the order of positive floats, upside down, and
+  // the half-edge.
+  std::vector<std::uint64_t> passes;
   for (std::int32_t f = 0; f < surface.face_count(); ++f)
     for (int i = 0; i < 3; ++i) {
       const std::int32_t h = halfedge(f, i);
@@ -62,12 +90,11 @@ std::vector<float> prominences(const Surface& surface, const CurvatureField& fie
       const std::int32_t v = surface.origin(h);
       const std::int32_t w = surface.target(h);
       if (peaks[v] == peaks[w] || !field.comparable(v, w)) continue;
-      passes.push_back({std::min(field.magnitude(v), field.magnitude(w)), peaks[v], peaks[w]});
+      const float height = std::min(field.magnitude(v), field.magnitude(w));
+      passes.push_back(std::uint64_t{~std::bit_cast<std::uint32_t>(height)} << 32 |
+                       static_cast<std::uint32_t>(h));
     }
-  std::sort(passes.begin(), passes.end(), [](const Pass& a, const Pass& b) {
-    if (a.height != b.height) return a.height > b.height;
-    return std::pair(a.first, a.second) < std::pair(b.first, b.second);
-  });
+  std::sort(passes.begin(), passes.end());
 
   // The sea falls: at each pass the lower of two islands becomes part of the higher one.
   std::vector<float> result(peaks.size(), 0.0f);
@@ -82,12 +109,14 @@ std::vector<float> prominences(const Surface& surface, const CurvatureField& fie
   };
   for (std::size_t v = 0; v < peaks.size(); ++v)
     if (peaks[v] == static_cast<std::int32_t>(v)) result[v] = field.magnitude(peaks[v]);
-  for (const Pass& pass : passes) {
-    std::int32_t high = summit(pass.first);
-    std::int32_t low = summit(pass.second);
+  for (const std::uint64_t pass : passes) {
+    const auto h = static_cast<std::int32_t>(pass & 0xffffffff);
+    std::int32_t high = summit(peaks[surface.origin(h)]);
+    std::int32_t low = summit(peaks[surface.target(h)]);
     if (high == low) continue;
+    const float height = std::bit_cast<float>(~static_cast<std::uint32_t>(pass >> 32));
     if (field.higher(low, high)) std::swap(low, high);
-    result[low] = field.magnitude(low) - pass.height;
+    result[low] = field.magnitude(low) - height;
     island[low] = high;
   }
   return result;

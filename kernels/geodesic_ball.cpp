@@ -9,8 +9,8 @@ namespace {
 /// Distance of the corner at (x, y), y > 0, from a source below the base (0, 0) - (length, 0) that
 /// lies so far from its ends; from over an end if the straight line misses the base.
 double across_face(double from_first, double from_second, double length, double x, double y) {
-  const double around =
-      std::min(from_first + std::hypot(x, y), from_second + std::hypot(x - length, y));
+  const auto norm = [](double a, double b) { return std::sqrt(a * a + b * b); };
+  const double around = std::min(from_first + norm(x, y), from_second + norm(x - length, y));
   if (!(length > 0)) return around;
   const double source_x =
       (from_first * from_first - from_second * from_second + length * length) / (2 * length);
@@ -19,7 +19,7 @@ double across_face(double from_first, double from_second, double length, double 
   const double below = std::sqrt(below2);
   const double crossing = source_x + (x - source_x) * below / (below + y);
   if (!(crossing >= 0 && crossing <= length)) return around;
-  return std::min(around, std::hypot(x - source_x, y + below));
+  return std::min(around, norm(x - source_x, y + below));
 }
 
 }  // namespace
@@ -75,38 +75,49 @@ bool GeodesicBall::settle_next(std::int32_t& vertex, double& distance) {
   return false;
 }
 
-void GeodesicBall::spread(const Surface& surface, std::span<const Eigen::Vector4f> points,
-                          std::int32_t vertex, bool is_centre, double radius) {
-  const double here = known(vertex).distance;
-  const auto point = [&](std::int32_t v) -> Eigen::Vector3d {
-    return points[v].head<3>().cast<double>();
-  };
-  const Eigen::Vector3d p = point(vertex);
-  const auto reach = [&](std::int32_t to, double distance) {
-    if (is_centre || distance <= radius) offer(to, distance);
+void GeodesicBall::look_round(const Surface& surface, std::span<const Eigen::Vector4f> points,
+                              std::int32_t vertex) {
+  ring_.clear();
+  const Eigen::Vector3d p = points[vertex].head<3>().cast<double>();
+  const auto look = [&](std::int32_t w) {
+    const Eigen::Vector3d spoke = points[w].head<3>().cast<double>() - p;
+    const Known& entry = known(w);
+    ring_.push_back({w, entry.settled, entry.distance, spoke.norm(), spoke});
   };
   const std::int32_t start = surface.outgoing[vertex];
   std::int32_t h = start;
   do {
-    const std::int32_t a = surface.target(h);
-    const std::int32_t b = surface.origin(prev(h));
-    reach(a, here + (point(a) - p).norm());
-    reach(b, here + (point(b) - p).norm());
-    // Over the face, from the base between this vertex and a settled one to the third corner.
-    for (const auto& [second, third] : {std::pair(a, b), std::pair(b, a)}) {
-      const Known& other = known(second);
-      if (is_centre || !other.settled) continue;
-      const double from_second = other.distance;
-      const Eigen::Vector3d base = point(second) - p;
-      const double length = base.norm();
-      if (!(length > 0)) continue;
-      const Eigen::Vector3d apex = point(third) - p;
-      const double x = apex.dot(base) / length;
-      const double y = std::sqrt(std::max(0.0, apex.squaredNorm() - x * x));
-      reach(third, across_face(here, from_second, length, x, y));
-    }
+    look(surface.target(h));
+    const std::int32_t last = prev(h);
     h = surface.ccw(h);
+    if (h == kNone) look(surface.origin(last));
   } while (h != kNone && h != start);
+  ring_closed_ = h == start;
+}
+
+void GeodesicBall::spread(const Surface& surface, std::span<const Eigen::Vector4f> points,
+                          std::int32_t vertex, bool is_centre, double radius) {
+  const double here = known(vertex).distance;
+  look_round(surface, points, vertex);
+  const auto reach = [&](const Neighbour& to, double distance) {
+    if (!to.settled && (is_centre || distance <= radius)) offer(to.vertex, distance);
+  };
+  for (const Neighbour& to : ring_) reach(to, here + to.length);
+  if (is_centre) return;
+  // Over each face, from the base between this vertex and a settled one to the third corner.
+  const auto cross = [&](const Neighbour& base, const Neighbour& to) {
+    if (!base.settled || to.settled || !(base.length > 0)) return;
+    const double x = to.spoke.dot(base.spoke) / base.length;
+    const double y = std::sqrt(std::max(0.0, to.length * to.length - x * x));
+    reach(to, across_face(here, base.distance, base.length, x, y));
+  };
+  const std::size_t faces = ring_closed_ ? ring_.size() : ring_.size() - 1;
+  for (std::size_t i = 0; i < faces; ++i) {
+    const Neighbour& a = ring_[i];
+    const Neighbour& b = ring_[i + 1 < ring_.size() ? i + 1 : 0];
+    cross(a, b);
+    cross(b, a);
+  }
 }
 
 }  // namespace semigeo::kernels

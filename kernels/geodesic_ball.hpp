@@ -47,8 +47,18 @@ class GeodesicBall {
     double distance = 0;
   };
 
+  struct Neighbour {
+    std::int32_t vertex;
+    bool settled;
+    double distance;        ///< from the centre, if settled
+    double length;          ///< of the spoke
+    Eigen::Vector3d spoke;  ///< from the vertex in the middle
+  };
+
   void start(std::int32_t centre);
   bool settle_next(std::int32_t& vertex, double& distance);
+  void look_round(const Surface& surface, std::span<const Eigen::Vector4f> points,
+                  std::int32_t vertex);
   void spread(const Surface& surface, std::span<const Eigen::Vector4f> points, std::int32_t vertex,
               bool is_centre, double radius);
   Known& known(std::int32_t vertex);
@@ -58,6 +68,8 @@ class GeodesicBall {
   std::vector<Front> heap_;
   std::vector<Known> table_;  ///< hash table, open addressing
   std::size_t used_ = 0;
+  std::vector<Neighbour> ring_;  ///< of the vertex settled last, anticlockwise
+  bool ring_closed_ = false;
 };
 
 }  // namespace semigeo::kernels

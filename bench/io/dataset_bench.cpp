@@ -39,6 +39,7 @@ struct Content {
     part.assign(points.size(), 0);
     source.resize(points.size());
     std::iota(source.begin(), source.end(), 0);
+    for (kernels::SampledContours& none : features.contours) none.offsets = {0};
   }
 
   io::EncodedConnectivity encode_connectivity(Compression compression) const {
@@ -51,7 +52,8 @@ struct Content {
             io::encode_array(io::array_of(std::span(normals)), compression),
             io::encode_array(io::array_of(std::span(gaussian)), compression),
             io::encode_array(io::array_of(std::span(mean)), compression),
-            io::encode_array(io::array_of(std::span(completeness)), compression)};
+            io::encode_array(io::array_of(std::span(completeness)), compression),
+            io::encode_features(features, compression)};
   }
   std::int64_t vertices() const { return static_cast<std::int64_t>(points.size()); }
   /// Bytes of a level's fields before compression.
@@ -61,6 +63,7 @@ struct Content {
   std::vector<float> gaussian, mean, completeness;
   std::vector<std::array<std::int32_t, 3>> triangles;
   std::vector<std::int32_t> source, part;
+  kernels::LevelFeatures features;  // none: they are few beside the vertices
 };
 
 void write(const fs::path& path, const Content& content, Compression compression) {
@@ -70,6 +73,8 @@ void write(const fs::path& path, const Content& content, Compression compression
     writer.write_level(
         {.iteration = k, .step = 1, .scale = std::sqrt(k + 1.0), .mean_edge_length = 1, .parts = 1},
         content.encode_fields(compression));
+  writer.write_selection({.feature_counts = std::vector<std::int64_t>(kLevels),
+                          .smoothed = std::vector<double>(kLevels)});
   writer.finish();
 }
 

@@ -29,6 +29,8 @@ constexpr std::int64_t kContourBlock = 16;
 /// |K| sigma^2 and |H| sigma of a surface that is flat but for the rounding of its points.
 constexpr double kFlatGaussian = 1e-6;
 constexpr double kFlatMean = 1e-5;
+/// In |value|: what stands out less is constant but for the errors of K and H, as on spheres.
+constexpr float kLeastProminence = 1e-3f;
 
 /// What `find(range, found)` appends for the blocks of [0, count), in the order of the blocks.
 template <typename Value, typename Find>
@@ -106,20 +108,12 @@ class Finder {
             if (uphill[v] == v) found.push_back(v);
           }
         });
-    if (radius_ > 0)
-      peaks = collect<std::int32_t>(
-          workers_, static_cast<std::int64_t>(peaks.size()), kPeakBlock,
-          [&](IndexRange range, std::vector<std::int32_t>& found) {
-            kernels::GeodesicBall ball;
-            for (auto i = range.begin; i < range.end; ++i)
-              if (kernels::is_maximum(surface_, mesh_.points, field, peaks[i], radius_, ball))
-                found.push_back(peaks[i]);
-          });
     if (peaks.empty()) return {};
-    std::sort(peaks.begin(), peaks.end(),
-              [&](std::int32_t a, std::int32_t b) { return row_[a] < row_[b]; });
     const std::vector<float> prominences =
         kernels::prominences(surface_, field, kernels::peaks_of(std::move(uphill)));
+    if (radius_ > 0) peaks = highest_within_radius(field, peaks, prominences);
+    std::sort(peaks.begin(), peaks.end(),
+              [&](std::int32_t a, std::int32_t b) { return row_[a] < row_[b]; });
     std::vector<Feature> features;
     features.reserve(peaks.size());
     for (const std::int32_t v : peaks) {
@@ -130,6 +124,23 @@ class Finder {
       features.push_back(feature);
     }
     return features;
+  }
+
+  /// Those of the peaks that stand out and outdo all within the radius.
+  std::vector<std::int32_t> highest_within_radius(const CurvatureField& field,
+                                   const std::vector<std::int32_t>& peaks,
+                                   const std::vector<float>& prominences) const {
+    return collect<std::int32_t>(
+        workers_, static_cast<std::int64_t>(peaks.size()), kPeakBlock,
+        [&](IndexRange range, std::vector<std::int32_t>& found) {
+          kernels::GeodesicBall ball;
+          for (auto i = range.begin; i < range.end; ++i) {
+            const std::int32_t v = peaks[i];
+            if (prominences[v] >= kLeastProminence * field.magnitude(v) &&
+                kernels::is_maximum(surface_, mesh_.points, field, v, radius_, ball))
+              found.push_back(v);
+          }
+        });
   }
 
   /// What features of all kinds have; `at(values)` is a value there of those of all vertices.

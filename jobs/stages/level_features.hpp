@@ -8,7 +8,8 @@ namespace semigeo::jobs {
 
 struct FeatureOptions {
   /// Maxima of curvature are compared with what lies within so many scales of the level, along the
-  /// surface; 0: with the ring of neighbours, as in the thesis.
+  /// surface, and must stand out from it by a thousandth. 0: with the ring of neighbours alone, as
+  /// in the thesis.
   double radius = 1.5;
   double min_completeness = 0.6;  ///< of the patches of vertices that may be features
 };

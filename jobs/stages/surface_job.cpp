@@ -110,6 +110,12 @@ LevelConnectivity first_connectivity(const PreparedSurface& prepared) {
   return first;
 }
 
+kernels::SampledContours no_contours() {
+  kernels::SampledContours none;
+  none.offsets = {0};
+  return none;
+}
+
 io::EncodedFields encode_fields(const LevelFields& fields, io::RowOrder order,
                                 ParallelEncoder& encoder) {
   io::EncodedFields encoded;
@@ -131,6 +137,11 @@ io::EncodedFields encode_fields(const LevelFields& fields, io::RowOrder order,
     encoder.add(io::array_of(std::span(fields.principal_direction_2), order),
                 principal.direction_2);
   }
+  const kernels::LevelFeatures features = {.of_kind = {},
+                                           .contours = {no_contours(), no_contours()}};
+  io::for_each_array(
+      features, encoded.features,
+      [&](const io::ArrayView& view, io::EncodedArray& target) { encoder.add(view, target); });
   encoder.run();
   return encoded;
 }
@@ -264,6 +275,9 @@ SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters&
   EvolvingSurface evolving(std::move(surface), parameters.evolution, context, std::move(origins));
   result.remeshed = write_levels(evolving, parameters, *writer, context);
   result.vanished = evolving.vanished();
+  const auto levels = static_cast<std::size_t>(result.levels);
+  writer->write_selection({.feature_counts = std::vector<std::int64_t>(levels),
+                           .smoothed = std::vector<double>(levels)});
   writer->finish();
   return result;
 }

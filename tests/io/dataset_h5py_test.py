@@ -30,6 +30,37 @@ def expected_level(level, changing):
     }
 
 
+FEATURE = np.dtype([("vertex", "<i8"), ("value", "<f4"), ("prominence", "<f4"),
+                    ("position", "<f4", 3), ("initial_position", "<f4", 3), ("normal", "<f4", 3),
+                    ("scale_free_gaussian", "<f4"), ("scale_free_mean", "<f4")])
+KINDS = ("gaussian", "mean", "gaussian_torsion", "mean_torsion")
+
+
+def expected_features(level, kind):
+    rows = np.zeros(level * (5 + kind), FEATURE)
+    i = np.arange(len(rows))
+    rows["vertex"], rows["value"], rows["prominence"] = i, i - kind, 0.5 * i
+    rows["position"][:, 0], rows["position"][:, 1:] = i, (kind, level)
+    rows["initial_position"][:, 0], rows["initial_position"][:, 1:] = i, (kind, -1)
+    rows["normal"] = (0, level, 1)
+    rows["scale_free_gaussian"], rows["scale_free_mean"] = 0.25 * i, -0.25 * i
+    return rows
+
+
+def expected_contours(level, kind):
+    count = level * (2 + kind)
+    offsets = np.cumsum([0] + [3 + i for i in range(count)], dtype="i8")
+    p = np.arange(offsets[-1])
+    points = np.stack([0.5 * p, np.full(len(p), kind), np.full(len(p), level)], axis=1)
+    return {
+        "points": points.astype("f4"),
+        "torsion": (p - kind).astype("f4"),
+        "offsets": offsets,
+        "closed": (np.arange(count) % 2).astype("u1"),
+        "maxima": np.arange(level * (7 + kind), dtype="i8"),
+    }
+
+
 def check_same(found, wanted, what):
     assert found.dtype == wanted.dtype, (what, found.dtype, wanted.dtype)
     np.testing.assert_array_equal(found[...], wanted, err_msg=what)
@@ -39,7 +70,7 @@ def check_levels(file, levels, compression):
     assert sorted(file["levels"]) == ["000", "001", "002"]
     for k, wanted in enumerate(levels):
         group = file[f"levels/{k:03d}"]
-        assert sorted(group) == sorted(wanted)
+        assert sorted(group) == sorted([*wanted, "features", "contours"])
         attributes = dict(group.attrs)
         assert attributes == {"iteration": k, "step": 0.5, "scale": 0.25 + k,
                               "mean_edge_length": 1.5, "parts": 50, "shortest_side": 0.125,
@@ -49,6 +80,31 @@ def check_levels(file, levels, compression):
             check_same(group[name], values, f"{k} {name}")
             assert group[name].fletcher32
             assert group[name].shuffle == (compression == "deflate")
+
+
+def check_features(file, compression):
+    assert FEATURE.itemsize == 60
+    for k in range(LEVELS):
+        features, contours = file[f"levels/{k:03d}/features"], file[f"levels/{k:03d}/contours"]
+        assert sorted(features) == sorted(KINDS) and sorted(contours) == ["gaussian", "mean"]
+        for kind, name in enumerate(KINDS):
+            check_same(features[name], expected_features(k, kind), f"{k} {name}")
+            assert features[name].shuffle == (compression == "deflate" and k > 0)
+        for kind, name in enumerate(("gaussian", "mean")):
+            wanted = expected_contours(k, kind)
+            assert sorted(contours[name]) == sorted(wanted)
+            for array, values in wanted.items():
+                check_same(contours[name][array], values, f"{k} {name} {array}")
+            assert dict(contours[name].attrs) == {"count": k * (2 + kind),
+                                                  "length": 2.5 * wanted["offsets"][-1]}
+    np.testing.assert_array_equal(file["levels/002/features/mean"]["value"], np.arange(12) - 1)
+
+
+def check_selection(file, changing):
+    selection = file["selection"]
+    check_same(selection["feature_counts"], np.array([0, 26, 52], "i8"), "feature_counts")
+    check_same(selection["smoothed"], np.array([0.5, 26.5, 52.5]), "smoothed")
+    assert dict(selection.attrs) == {"level": 2, "chosen": b"option" if changing else b"slope"}
 
 
 def check_sharing(file, changing):
@@ -111,7 +167,7 @@ def check_header(file, digest):
     assert text["job_key"] == "key-of-the-job" and text["length_unit"] == "mm"
     assert text["parameters"] == '{"levels": 3}'
     assert text["repairs"] == '{"duplicate_faces": 2}'
-    assert file.attrs["complete"] == 1 and file.attrs["format_version"] == 2
+    assert file.attrs["complete"] == 1 and file.attrs["format_version"] == 3
     assert list(file.attrs["origin"]) == [1000.5, -2, 3]
 
 
@@ -129,6 +185,8 @@ def main(writer):
                     check_header(file, digest)
                     check_no_times(file)
                     check_levels(file, levels, compression)
+                    check_features(file, compression)
+                    check_selection(file, changing)
                     check_sharing(file, changing)
                     check_vtkhdf(file, levels, changing)
                 print(mode, compression, "ok")

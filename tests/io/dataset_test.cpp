@@ -12,6 +12,7 @@
 #include "io/error.hpp"
 #include "io/hdf5_library.hpp"
 #include "tests/io/sample_dataset.hpp"
+#include "tests/support/equal_features.hpp"
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -71,6 +72,12 @@ TEST_P(DatasetRoundTrip, EverythingComesBack) {
   EXPECT_EQ(header.repairs_json, wanted.repairs_json);
   EXPECT_EQ(header.origin, wanted.origin);
 
+  const Selection selection = dataset.selection();
+  EXPECT_EQ(selection.feature_counts, (std::vector<std::int64_t>{0, 26, 52}));
+  EXPECT_EQ(selection.smoothed, (std::vector<double>{0.5, 26.5, 52.5}));
+  EXPECT_EQ(selection.level, 2);
+  EXPECT_EQ(selection.chosen, sample().changing ? Chosen::option : Chosen::slope);
+
   for (int k = 0; k < 3; ++k) {
     const SampleLevel level = tests::sample_level(sample(), k);
     const LevelInfo info = dataset.level(k);
@@ -96,6 +103,17 @@ TEST_P(DatasetRoundTrip, EverythingComesBack) {
     for (const auto& triangle : level.triangles)
       corners.insert(corners.end(), triangle.begin(), triangle.end());
     EXPECT_EQ(dataset.read_integers(k, "triangles"), corners);
+    for (int kind = 0; kind < kernels::kFeatureKinds; ++kind) {
+      EXPECT_TRUE(dataset.read_features(k, kernels::FeatureKind(kind)) ==
+                  level.features.of_kind[kind]);
+      EXPECT_EQ(info.features.of_kind[kind], k * (5 + kind));
+    }
+    for (int kind = 0; kind < kContourKinds; ++kind) {
+      EXPECT_TRUE(dataset.read_contours(k, kernels::FeatureKind(kind)) ==
+                  level.features.contours[kind]);
+      EXPECT_EQ(info.features.contours[kind], k * (2 + kind));
+      EXPECT_EQ(info.features.contour_length[kind], level.features.contours[kind].length);
+    }
   }
 }
 
@@ -167,6 +185,8 @@ TEST(Dataset, VerifyNamesTheArrayWhoseBytesChanged) {
       {&fields.gaussian_curvature, "/levels/001/gaussian_curvature"},
       {&shared.triangles, "/levels/000/triangles"},
       {&shared.source_vertex, "/levels/000/source_vertex"},
+      {&fields.features.of_kind[1], "/levels/001/features/mean"},
+      {&fields.features.contours[0].torsion, "/levels/001/contours/gaussian/torsion"},
   };
   for (const auto& [array, name] : arrays) {
     std::filesystem::copy_file(folder / "whole.vtkhdf", folder / "broken.vtkhdf",
@@ -266,6 +286,9 @@ TEST(Dataset, AsksForWhatExists) {
   EXPECT_THROW(dataset.read_floats(0, "triangles"), Error);
   EXPECT_THROW(dataset.read_floats(0, "torsion"), Error);
   EXPECT_THROW(dataset.read_integers(0, "points"), Error);
+  EXPECT_THROW(dataset.read_features(3, kernels::FeatureKind::mean), Error);
+  EXPECT_THROW(dataset.read_contours(3, kernels::FeatureKind::mean), Error);
+  EXPECT_THROW(dataset.read_contours(0, kernels::FeatureKind::mean_torsion), std::invalid_argument);
 }
 
 TEST(DatasetWriter, UnfinishedLeavesNothing) {
@@ -295,6 +318,35 @@ TEST(DatasetWriter, RefusesWhatDoesNotFit) {
   EXPECT_THROW(writer.finish(), std::invalid_argument);
   EXPECT_THROW(writer.write_level(level.attributes, tests::encode_fields(longer, none)),
                std::invalid_argument);
+}
+
+TEST(DatasetWriter, RefusesASelectionThatDoesNotFit) {
+  const tests::TemporaryFolder folder;
+  const Compression none = Compression::none;
+  const SampleLevel level = tests::sample_level({.vertices = 10, .triangles = 8}, 1);
+  const Selection right = {.feature_counts = {26}, .smoothed = {26}};
+  DatasetWriter writer(folder / "a.vtkhdf", tests::sample_header(), none);
+  EXPECT_THROW(writer.write_selection({}), std::invalid_argument);
+  writer.write_connectivity(tests::encode_connectivity(level, none));
+  EXPECT_THROW(writer.write_selection(right), std::invalid_argument);
+  writer.write_level(level.attributes, tests::encode_fields(level, none));
+  EXPECT_THROW(writer.finish(), std::invalid_argument);
+  Selection wrong = right;
+  wrong.feature_counts = {25};
+  EXPECT_THROW(writer.write_selection(wrong), std::invalid_argument);
+  wrong = right;
+  wrong.smoothed = {};
+  EXPECT_THROW(writer.write_selection(wrong), std::invalid_argument);
+  for (const std::int64_t beyond : {-1, 1}) {
+    wrong = right;
+    wrong.level = beyond;
+    EXPECT_THROW(writer.write_selection(wrong), std::invalid_argument);
+  }
+  writer.write_selection(right);
+  EXPECT_THROW(writer.write_selection(right), std::invalid_argument);
+  EXPECT_THROW(writer.write_connectivity(tests::encode_connectivity(level, none)),
+               std::invalid_argument);
+  EXPECT_NO_THROW(writer.finish());
 }
 
 TEST(DatasetWriter, ScalesMustGrow) {

@@ -8,7 +8,9 @@ semigeo_tests(io_dataset_tests
     atomic_file_test.cpp
     chunk_codec_test.cpp
     dataset_test.cpp
+    feature_tables_test.cpp
     hdf5_test.cpp
+    selection_test.cpp
     utf8_test.cpp
     vtkhdf_test.cpp
     xdmf_test.cpp

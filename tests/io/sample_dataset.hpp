@@ -32,12 +32,15 @@ struct SampleLevel {
   std::vector<std::array<std::int32_t, 3>> triangles;
   std::vector<std::int32_t> source_vertex;
   std::vector<std::int32_t> part;
+  kernels::LevelFeatures features;  ///< level 0 has none, and no contours
 };
 
 SampleLevel sample_level(const Sample& sample, int level);
 io::DatasetHeader sample_header();
 io::EncodedFields encode_fields(const SampleLevel& level, io::Compression compression);
 io::EncodedConnectivity encode_connectivity(const SampleLevel& level, io::Compression compression);
+/// Counts of the levels' features, and a level.
+io::Selection sample_selection(const Sample& sample);
 
 /// Returns the content digest.
 std::string write_sample(const std::filesystem::path& path, const Sample& sample = {});

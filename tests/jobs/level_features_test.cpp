@@ -160,6 +160,13 @@ TEST(LevelFeaturesTest, AnEllipsoidIsPointedAtTwoEnds) {
   EXPECT_EQ(mesh.features[0].contours[1].count(), 0);
 }
 
+/// But for the one vertex that is higher than all others by the error of K and H.
+TEST(LevelFeaturesTest, ASphereHasNone) {
+  const EvolvedMesh sphere = evolve_mesh(shapes::icosphere(5), 2);
+  for (const LevelFeatures& level : sphere.features)
+    for (const auto& features : level.of_kind) EXPECT_LE(features.size(), 1);
+}
+
 TEST(LevelFeaturesTest, WhatIsFlatHasNone) {
   TriangleMesh plane = shapes::plane(1, 40);
   for (Vector3d& p : plane.points) p += Vector3d(30, 20, 10);

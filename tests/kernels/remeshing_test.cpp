@@ -407,6 +407,26 @@ TEST(RemeshingTest, NewVerticesComeNextToThoseTheyComeFrom) {
   EXPECT_EQ(mesh.source.front(), 0);
 }
 
+TEST(RemeshingTest, PlacesOnLevelZeroAreCarriedAlong) {
+  LevelMesh mesh = level_mesh(shapes::icosphere(3));
+  const std::vector<Eigen::Vector3f> before = mesh.initial_points;
+  // The level itself is elsewhere by now.
+  for (auto& p : mesh.points) p.head<3>() *= 2;
+  refine_to(mesh, 2000, 0.01, 0.01);
+  std::int64_t inserted = 0;
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    const Eigen::Vector3f& p = mesh.initial_points[v];
+    if (mesh.source[v] != kNone) {
+      EXPECT_EQ(p, before[mesh.source[v]]);
+      continue;
+    }
+    ++inserted;
+    EXPECT_NEAR(p.norm(), 1, 0.01);  // on a chord of the sphere of level 0
+    EXPECT_LT((p - mesh.points[v].head<3>() / 2).norm(), 0.01);
+  }
+  EXPECT_EQ(inserted, 360);
+}
+
 TEST(RemeshingTest, MarksOfFilledVerticesAndFacesAreCarriedAlong) {
   LevelMesh mesh = level_mesh(shapes::icosphere(3));
   for (const auto& p : mesh.points) mesh.vertex_filled.push_back(p.z() > 0);

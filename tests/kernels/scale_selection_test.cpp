@@ -33,5 +33,12 @@ TEST(ScaleSelectionTest, FewLevels) {
   EXPECT_EQ(select_scale(std::vector<std::int64_t>{100, 50, 40, 38, 37}).level, 4);
 }
 
+TEST(ScaleSelectionTest, WhatHasVanishedIsNotStable) {
+  std::vector<std::int64_t> counts(30, 0);
+  for (int k = 0; k < 12; ++k) counts[k] = 400 - 30 * k;
+  EXPECT_LE(select_scale(counts).level, 10);
+  EXPECT_EQ(select_scale(std::vector<std::int64_t>(5, 0)).level, 0);
+}
+
 }  // namespace
 }  // namespace semigeo::kernels

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <random>
 
 #include "kernels/gaussian.hpp"
 
@@ -43,6 +44,7 @@ TEST(TorsionTest, EqualStepsAlongAPolyline) {
   const ArcSamples closed = resample(square, true, 0.26);
   ASSERT_EQ(closed.at.size(), 15);
   EXPECT_LT((at(square, closed).back() - Vector3d(0, 4.0 / 15, 0)).norm(), 1e-6);
+  EXPECT_EQ(resample(square, true, 100).at.size(), 3);  // still goes round
   EXPECT_EQ(resample(std::vector<Vector3d>(3, Vector3d::Zero()), true, 1).at.size(), 1);
 }
 
@@ -144,6 +146,43 @@ TEST(TorsionTest, MaximaAreOfTheMagnitude) {
   const std::vector<float> tau = {0, 1, 3, 2, -1, -4, -2, 0, 5};
   EXPECT_EQ(torsion_maxima(tau, false), (std::vector<std::int32_t>{2, 5}));
   EXPECT_EQ(torsion_maxima(tau, true), (std::vector<std::int32_t>{2, 5, 8}));
+}
+
+TEST(TorsionTest, ProminenceIsTheFallOnTheEasierWayToAHigherOne) {
+  const std::vector<float> tau = {2, 1, -3, 0.5f, 4, 2, 5, 3, 3.5f};
+  // 3 and 4 must climb down to 0.5 and 2 before they meet a higher one; on a closed contour 3.5 and
+  // 2 are neighbours.
+  EXPECT_EQ(torsion_prominences(tau, false), (std::vector<float>{1, 0, 2.5f, 0, 2, 0, 5, 0, 0.5f}));
+  EXPECT_EQ(torsion_prominences(tau, true), (std::vector<float>{0, 0, 2, 0, 2, 0, 5, 0, 0.5f}));
+  EXPECT_TRUE(torsion_prominences({}, true).empty());
+}
+
+/// Against the definition, on a walk of random steps.
+TEST(TorsionTest, ProminenceAgreesWithItsDefinition) {
+  std::mt19937 random(5);
+  for (const bool closed : {false, true}) {
+    std::vector<float> tau(40);
+    for (float& t : tau) t = static_cast<float>(random() % 50) - 25;
+    const auto found = torsion_prominences(tau, closed);
+    const int n = static_cast<int>(tau.size());
+    for (int i = 0; i < n; ++i) {
+      float pass = -1;
+      for (const int direction : {-1, 1}) {
+        float lowest = std::abs(tau[i]);
+        for (int k = 1; k < n; ++k) {
+          int j = i + direction * k;
+          if (!closed && (j < 0 || j >= n)) break;
+          j = (j + n) % n;
+          if (std::abs(tau[j]) > std::abs(tau[i])) {
+            pass = std::max(pass, lowest);
+            break;
+          }
+          lowest = std::min(lowest, std::abs(tau[j]));
+        }
+      }
+      EXPECT_EQ(found[i], std::abs(tau[i]) - std::max(pass, 0.0f)) << i;
+    }
+  }
 }
 
 }  // namespace

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace semigeo::io {
+
+/// Element types of stored arrays, all little endian. A record is an element as well: a row of
+/// named members, one after the other without gaps (a compound of HDF5).
+enum class ElementType { float32, float64, int32, int64, uint8, feature };
+
+/// A member of a record: one number, or a short array of `columns` of them.
+struct RecordMember {
+  const char* name;
+  ElementType type;
+  int columns = 1;
+};
+
+/// ElementType::feature, a row of a feature table; kernels::Feature says what the members mean.
+inline constexpr std::array<RecordMember, 8> kFeatureMembers = {{
+    {"vertex", ElementType::int64},
+    {"value", ElementType::float32},
+    {"prominence", ElementType::float32},
+    {"position", ElementType::float32, 3},
+    {"initial_position", ElementType::float32, 3},
+    {"normal", ElementType::float32, 3},
+    {"scale_free_gaussian", ElementType::float32},
+    {"scale_free_mean", ElementType::float32},
+}};
+
+constexpr std::int64_t size_of(ElementType type) {
+  switch (type) {
+    case ElementType::float32:
+    case ElementType::int32:
+      return 4;
+    case ElementType::float64:
+    case ElementType::int64:
+      return 8;
+    case ElementType::uint8:
+      return 1;
+    case ElementType::feature: {
+      std::int64_t size = 0;
+      for (const RecordMember& member : kFeatureMembers)
+        size += member.columns * size_of(member.type);
+      return size;
+    }
+  }
+  return 0;
+}
+static_assert(size_of(ElementType::feature) == 60);
+
+/// As messages and the content digest have it; of a record with its members.
+constexpr std::string_view name_of(ElementType type) {
+  switch (type) {
+    case ElementType::float32:
+      return "float32";
+    case ElementType::float64:
+      return "float64";
+    case ElementType::int32:
+      return "int32";
+    case ElementType::int64:
+      return "int64";
+    case ElementType::uint8:
+      return "uint8";
+    case ElementType::feature:
+      return "{vertex:int64,value:float32,prominence:float32,position:float32[3],"
+             "initial_position:float32[3],normal:float32[3],scale_free_gaussian:float32,"
+             "scale_free_mean:float32}";
+  }
+  return "?";
+}
+
+}  // namespace semigeo::io
