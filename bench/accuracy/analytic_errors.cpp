@@ -6,12 +6,15 @@
 #include <limits>
 #include <stdexcept>
 
-#include "bench/accuracy/quantile.hpp"
+#include "bench/support/quantile.hpp"
 #include "kernels/surface_builder.hpp"
 #include "kernels/vertex_order.hpp"
 
 namespace semigeo::accuracy {
 namespace {
+
+using bench::median;
+using bench::quantile;
 
 constexpr int kInside = 8;
 /// Below this share of what the other curvature makes of it, a curvature is no scale for errors.

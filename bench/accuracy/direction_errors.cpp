@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/accuracy/quantile.hpp"
+#include "bench/support/quantile.hpp"
 
 namespace semigeo::accuracy {
 namespace {
+
+using bench::mean;
+using bench::median;
+using bench::quantile;
 
 constexpr std::int64_t kVertexBlock = 128;
 

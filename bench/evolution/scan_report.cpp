@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "bench/support/quoted.hpp"
 #include "bench/support/svg_plot.hpp"
 
 namespace semigeo::evolution {
@@ -19,13 +20,6 @@ constexpr Stretch kStretches[] = {
     {"filling", &ScanReport::filling},   {"decimation", &ScanReport::decimation},
     {"ordering", &ScanReport::ordering}, {"normals", &ScanReport::normals},
 };
-
-/// A name within quotes, its own doubled.
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + '"';
-}
 
 bench::Plot plot(const std::vector<ScanReport>& scans, const char* title,
                  double (*value)(const LevelReport&), bool relative) {
@@ -89,7 +83,7 @@ std::string csv(const std::vector<ScanReport>& scans) {
   text += "\n";
   for (const ScanReport& scan : scans)
     for (std::size_t k = 0; k < scan.levels.size(); ++k) {
-      text += quoted(scan.name) + "," + std::to_string(k);
+      text += bench::quoted(scan.name) + "," + std::to_string(k);
       for (const Column& column : columns()) {
         char cell[40];
         std::snprintf(cell, sizeof cell, column.whole ? ",%.0f" : ",%.9g",

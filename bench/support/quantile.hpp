@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-namespace semigeo::accuracy {
+namespace semigeo::bench {
 
 /// The value that the share q of all values does not exceed; NaN of none. Reorders them.
 inline double quantile(std::vector<double>& values, double q) {
@@ -26,4 +26,4 @@ inline double mean(const std::vector<double>& values) {
                         : sum / static_cast<double>(values.size());
 }
 
-}  // namespace semigeo::accuracy
+}  // namespace semigeo::bench
