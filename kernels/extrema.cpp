@@ -1,9 +1,12 @@
 #include "kernels/extrema.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numeric>
+
+#include "kernels/nearest_surface.hpp"
 
 namespace semigeo::kernels {
 namespace {
@@ -60,6 +63,52 @@ bool is_maximum(const Surface& surface, std::span<const Eigen::Vector4f> points,
     return highest;
   });
   return highest;
+}
+
+Summit summit(const Surface& surface, std::span<const Eigen::Vector4f> points,
+              const CurvatureField& field, std::int32_t v) {
+  const auto point = [&](std::int32_t w) -> Eigen::Vector3d {
+    return points[w].head<3>().cast<double>();
+  };
+  float least = field.magnitude(v);
+  any_neighbour(surface, v, [&](std::int32_t w) {
+    if (field.comparable(v, w)) least = std::min(least, field.magnitude(w));
+    return false;
+  });
+  double weights = field.magnitude(v) - least;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // relative to v
+  any_neighbour(surface, v, [&](std::int32_t w) {
+    if (!field.comparable(v, w)) return false;
+    weights += field.magnitude(w) - least;
+    sum += static_cast<double>(field.magnitude(w) - least) * (point(w) - point(v));
+    return false;
+  });
+
+  Summit best{{v, v, v}, {1, 0, 0}};
+  if (!(weights > 0)) return best;
+  const Eigen::Vector3d centroid = point(v) + sum / weights;
+  double nearest2 = (centroid - point(v)).squaredNorm();
+  const std::int32_t start = surface.outgoing[v];
+  std::int32_t h = start;
+  do {
+    const std::int32_t a = surface.target(h);
+    const std::int32_t b = surface.origin(prev(h));
+    const Eigen::Vector3d on_face = nearest_on_triangle(centroid, point(v), point(a), point(b));
+    const Eigen::Vector3d normal = (point(a) - point(v)).cross(point(b) - point(v));
+    const double distance2 = (on_face - centroid).squaredNorm();
+    if (distance2 < nearest2 && normal.squaredNorm() > 0) {
+      nearest2 = distance2;
+      const auto share = [&](std::int32_t p, std::int32_t q) {
+        const double area = (point(p) - on_face).cross(point(q) - on_face).dot(normal);
+        return static_cast<float>(std::clamp(area / normal.squaredNorm(), 0.0, 1.0));
+      };
+      const float at_a = share(b, v);
+      const float at_b = std::min(share(v, a), 1 - at_a);
+      best = {{v, a, b}, {1 - at_a - at_b, at_a, at_b}};
+    }
+    h = surface.ccw(h);
+  } while (h != kNone && h != start);
+  return best;
 }
 
 std::vector<std::int32_t> peaks_of(std::vector<std::int32_t> uphill) {

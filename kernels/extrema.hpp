@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -42,6 +43,28 @@ std::int32_t uphill(const Surface& surface, const CurvatureField& field, std::in
 /// triangulation.
 bool is_maximum(const Surface& surface, std::span<const Eigen::Vector4f> points,
                 const CurvatureField& field, std::int32_t v, double radius, GeodesicBall& ball);
+
+/// Where a maximum lies: a point of a face at the peak.
+struct Summit {
+  std::array<std::int32_t, 3> corners = {kNone, kNone, kNone};
+  std::array<float, 3> weights = {1, 0, 0};  ///< sum to 1
+
+  /// Of values at all vertices, the one here.
+  template <typename Values>
+  auto of(const Values& values) const {
+    using Value = typename Values::value_type;
+    return Value(weights[0] * values[corners[0]] + weights[1] * values[corners[1]] +
+                 weights[2] * values[corners[2]]);
+  }
+};
+
+/// Where on the faces round the peak v the maximum lies, of which v is but the nearest sample: at
+/// the centroid of v and its comparable neighbours, weighted by how far they rise above the least
+/// of them, moved onto the surface.
+/// Differs: the thesis takes the vertex (5.6.1). Another triangulation has other vertices; this
+/// point reappears more often (bench/repeatability).
+Summit summit(const Surface& surface, std::span<const Eigen::Vector4f> points,
+              const CurvatureField& field, std::int32_t v);
 
 /// For each vertex the peak at which its steepest ascent ends, or kNone. `uphill`: (N) results of
 /// that function; is used up. Linear cost.

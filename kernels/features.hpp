@@ -22,15 +22,14 @@ inline constexpr std::array<const char*, kFeatureKinds> kFeatureKindNames = {
 
 /// One feature of a level. Lengths and curvatures in the scan's length unit.
 struct Feature {
-  std::int64_t vertex =
-      kNone;             ///< row of the level; of torsion: the nearer end of the edge crossed
-  float value = 0;       ///< K, H or torsion, with its sign
-  float prominence = 0;  ///< how far |value| falls on the way to a higher one
-  Eigen::Vector3f position = Eigen::Vector3f::Zero();          ///< on the level
+  std::int64_t vertex = kNone;  ///< nearest row of the level
+  float value = 0;              ///< K, H or torsion, with its sign
+  float prominence = 0;         ///< how far |value| falls on the way to a higher one
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< on the level, between its vertices
   Eigen::Vector3f initial_position = Eigen::Vector3f::Zero();  ///< on level 0
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();            ///< unit, of the smoothed surface
-  float scale_free_gaussian = 0;                               ///< sign(K) sqrt(|K|) sigma, there
-  float scale_free_mean = 0;                                   ///< H sigma
+  float scale_free_gaussian = 0;  ///< sign(K) sqrt(|K|) sigma; of maxima at the vertex
+  float scale_free_mean = 0;      ///< H sigma
 };
 
 /// Contours of one kind, K = 0 or H = 0, in equal steps of arc length.

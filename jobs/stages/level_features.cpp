@@ -118,6 +118,9 @@ class Finder {
     features.reserve(peaks.size());
     for (const std::int32_t v : peaks) {
       Feature feature = feature_at([v](const auto& values) { return values[v]; });
+      const kernels::Summit summit = kernels::summit(surface_, mesh_.points, field, v);
+      feature.position = summit.of(fields_.points);
+      feature.initial_position = summit.of(mesh_.initial_points);
       feature.vertex = row_[v];
       feature.value = field.values[v];
       feature.prominence = prominences[v];

@@ -38,6 +38,10 @@ class Sheet {
         found.push_back(v);
     return found;
   }
+  Eigen::Vector2f summit(std::int32_t v) const {
+    const Summit point = kernels::summit(prepared_.surface, prepared_.points, field(), v);
+    return point.of(prepared_.points).head<2>();
+  }
   std::vector<float> prominences() const {
     std::vector<std::int32_t> steps;
     for (std::int32_t v = 0; v < prepared_.surface.vertex_count(); ++v)
@@ -68,6 +72,35 @@ TEST(ExtremaTest, HillsAndHollowsAreFoundWhereTheyAre) {
   ASSERT_EQ(found.size(), 2);
   EXPECT_TRUE(std::ranges::count(found, sheet.nearest(1.2, 0)) == 1);
   EXPECT_TRUE(std::ranges::count(found, sheet.nearest(-1.2, 0.5)) == 1);
+}
+
+TEST(ExtremaTest, TheSummitLiesBetweenTheVertices) {
+  for (const Eigen::Vector2d& top : {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(0.03, 0.02),
+                                     Eigen::Vector2d(-0.04, 0.03), Eigen::Vector2d(0.05, -0.05)}) {
+    const Sheet sheet([&](double x, double y) { return hill(x - top.x(), y - top.y(), 1, 0.5); });
+    const std::vector<std::int32_t> maxima = sheet.maxima(1);
+    ASSERT_EQ(maxima.size(), 1);
+    const Eigen::Vector2d vertex = sheet.at(maxima[0]).cast<double>();
+    const Eigen::Vector2d found = sheet.summit(maxima[0]).cast<double>();
+    EXPECT_LE((found - top).norm(), 0.55 * (vertex - top).norm() + 1e-6);
+  }
+}
+
+TEST(ExtremaTest, OnAPlateauTheSummitIsTheVertex) {
+  const Sheet sheet([](double, double) { return 2.0; });
+  const std::int32_t middle = sheet.nearest(0, 0);
+  EXPECT_EQ(sheet.summit(middle), sheet.at(middle));
+}
+
+/// Also where the ring is cut off by a boundary or by vertices that take no part.
+TEST(ExtremaTest, TheSummitStaysOnItsFaces) {
+  Sheet sheet([](double x, double y) { return 10 + x + 0.3 * y; });
+  const std::int32_t corner = sheet.nearest(3, 3);
+  EXPECT_LE(sheet.summit(corner).x(), 3);
+  EXPECT_GT(sheet.summit(corner).x(), 2.9 - 1e-6);
+  sheet.completeness.assign(sheet.completeness.size(), 0);
+  sheet.completeness[corner] = 1;
+  EXPECT_EQ(sheet.summit(corner), sheet.at(corner));
 }
 
 TEST(ExtremaTest, AHollowBesideAHillIsAMaximumOfItsOwn) {
