@@ -96,13 +96,13 @@ LevelInfo Dataset::level(int level) const {
   info.shortest_side = file_.read_attribute_as<double>(path, "shortest_side");
   for (const LevelCount& count : kLevelCounts)
     info.remeshed.*count.count = file_.read_attribute_as<std::int64_t>(path, count.name);
-  info.vertices = file_.open_array(path + "/points").shape().rows;
-  info.triangles = file_.open_array(path + "/triangles").shape().rows;
+  info.vertices = file_.shape_of(path + "/points").rows;
+  info.triangles = file_.shape_of(path + "/triangles").rows;
   for (const LevelArray& array : kLevelArrays) {
     if (array.presence == Presence::principal && !principal_) continue;
     if (array.presence == Presence::filled && !filled_) continue;
     const std::string name = path + "/" + array.name;
-    const ArrayShape shape = file_.open_array(name).shape();
+    const ArrayShape shape = file_.shape_of(name);
     if (shape.type != array.type || shape.columns != array.columns ||
         shape.rows != (array.per_triangle ? info.triangles : info.vertices))
       file_.refuse(name, "has not the type or shape that a level's " + std::string(array.name) +
@@ -142,13 +142,13 @@ Selection Dataset::selection() const {
 }
 
 void Dataset::verify() const {
+  const std::string found = content_digest(file_);  // first: it opens every array
   const Selection selected = selection();
   for (int k = 0; k < level_count_; ++k)
     if (level(k).features.total() != selected.feature_counts[k])
       file_.refuse("/selection/feature_counts",
                    "does not count the features of level " + std::to_string(k));
   check_vtkhdf(file_);
-  const std::string found = content_digest(file_);
   if (found != digest_)
     file_.refuse("attribute digest", "is " + digest_ + ", but the content has the digest " + found);
 }

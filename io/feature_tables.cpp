@@ -142,9 +142,10 @@ void write_features(DigestedFile& file, const std::string& level, const EncodedF
 FeatureCounts check_features(const Hdf5File& file, const std::string& level) {
   FeatureCounts counts;
   for (int kind = 0; kind < kFeatureKinds; ++kind) {
-    const Hdf5File::Array table = file.open_array(table_path(level, kind));
-    if (!is_table(table.shape())) file.refuse(table.path(), "is no table of features");
-    counts.of_kind[kind] = table.shape().rows;
+    const std::string table = table_path(level, kind);
+    const ArrayShape shape = file.shape_of(table);
+    if (!is_table(shape)) file.refuse(table, "is no table of features");
+    counts.of_kind[kind] = shape.rows;
   }
   for (int kind = 0; kind < kContourKinds; ++kind) {
     const std::string group = contours_path(level, kind);
@@ -152,7 +153,7 @@ FeatureCounts check_features(const Hdf5File& file, const std::string& level) {
     counts.contour_length[kind] = file.read_attribute_as<double>(group, "length");
     std::array<ArrayShape, kContourArrayCount> shapes;
     for (std::size_t i = 0; i < kContourArrayCount; ++i)
-      shapes[i] = file.open_array(group + "/" + kContourArrays[i].name).shape();
+      shapes[i] = file.shape_of(group + "/" + kContourArrays[i].name);
     const auto rows =
         contour_rows(shapes[0].rows, counts.contours[kind], counts.of_kind[torsion_of(kind)]);
     for (std::size_t i = 0; i < kContourArrayCount; ++i)

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <string>
 #include <utility>
@@ -106,6 +107,8 @@ class Hdf5File {
 
   class Array;
   Array open_array(const std::string& path) const;
+  /// Of an array as it was when it was opened first: looking again costs nothing.
+  ArrayShape shape_of(const std::string& path) const;
 
   /// A whole array by way of HDF5's own filters and virtual mappings, as little-endian rows. For
   /// tests: slow, and believes the file about its size.
@@ -125,6 +128,7 @@ class Hdf5File {
   Hdf5Handle handle_;
   std::filesystem::path shown_as_;
   bool writing_ = false;
+  mutable std::map<std::string, ArrayShape> shapes_;  ///< of the arrays opened so far
 };
 
 /// An open array of a file, which must outlive it.

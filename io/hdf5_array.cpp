@@ -155,9 +155,16 @@ void Hdf5File::write_virtual(const std::string& path, ElementType type, int colu
 
 Hdf5File::Array Hdf5File::open_array(const std::string& path) const {
   const std::int64_t file = id();
-  return Array(
+  Array array(
       *this, path,
       {checked(H5Dopen2(file, path.c_str(), H5P_DEFAULT), path, "open the dataset"), H5Dclose});
+  shapes_.try_emplace(path, array.shape());
+  return array;
+}
+
+ArrayShape Hdf5File::shape_of(const std::string& path) const {
+  const auto known = shapes_.find(path);
+  return known == shapes_.end() ? open_array(path).shape() : known->second;
 }
 
 std::vector<std::byte> Hdf5File::read_through_library(const std::string& path) const {

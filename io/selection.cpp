@@ -27,7 +27,7 @@ void write_selection(DigestedFile& file, const Selection& selection, Compression
 
 Selection read_selection(const Hdf5File& file, int levels) {
   const auto check_rows = [&](const std::string& path) {
-    if (file.open_array(path).shape().rows != levels)
+    if (file.shape_of(path).rows != levels)
       file.refuse(path, "has not one row for each of " + std::to_string(levels) + " levels");
   };
   Selection selection;
