@@ -27,9 +27,9 @@ struct ProcessLimits {
 
 struct Command {
   std::vector<std::string> arguments;  ///< [0] is the path of the program; PATH is not searched
-  ProcessLimits limits;
+  ProcessLimits limits = {};
   /// Takes standard output and standard error; made, with its folder. Empty: they are dropped.
-  std::filesystem::path log;
+  std::filesystem::path log = {};
   bool append_to_log = false;  ///< else the log starts empty
   /// The child gets lines on descriptor 0 and answers with lines on descriptor 3
   /// (kAnswersDescriptor). Otherwise its standard input is empty.
