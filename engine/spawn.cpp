@@ -1,0 +1,169 @@
+#include "engine/spawn.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <climits>
+#include <cmath>
+#include <cstdlib>
+#include <system_error>
+
+namespace semigeo::engine {
+namespace {
+
+constexpr int kFirstUnused = kAnswersDescriptor + 1;
+
+[[noreturn]] void fail(const Program& program, int error) {
+  throw std::system_error(error, std::generic_category(),
+                          "cannot start " + program.arguments.front());
+}
+
+/// `limit` with the wish as far as the hard limit allows it.
+rlimit lowered(rlimit limit, rlim_t wish) {
+  limit.rlim_cur = std::min(wish, limit.rlim_max);
+  return limit;
+}
+
+/// RLIMIT_CPU counts whole seconds.
+rlim_t whole_seconds(double seconds) {
+  return seconds > 0 && seconds < 1e15 ? static_cast<rlim_t>(std::ceil(seconds)) : RLIM_INFINITY;
+}
+
+/// All that happens between vfork and exec, made ready before: the child borrows this process's
+/// memory, other threads run on in it, and only async-signal-safe calls are allowed.
+class Launch {
+ public:
+  explicit Launch(const Program& program) {
+    for (const std::string& argument : program.arguments)
+      arguments_.push_back(const_cast<char*>(argument.c_str()));
+    arguments_.push_back(nullptr);
+    // Above the descriptors that dup2 is going to replace.
+    const int sources[] = {program.input, program.output, program.output, program.answers};
+    for (int target = 0; target < kFirstUnused; ++target)
+      if (sources[target] >= 0) sources_[target] = moved_up(program, sources[target]);
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0) fail(program, errno);
+    failure_ = Descriptor(ends[0]);
+    const Descriptor low(ends[1]);
+    report_ = moved_up(program, low.get());
+
+    getrlimit(RLIMIT_AS, &address_space_);
+    if (program.address_space_bytes > 0) {
+      address_space_ = lowered(address_space_, program.address_space_bytes);
+      address_space_.rlim_max = address_space_.rlim_cur;
+    }
+    // The hard limit stays: nobody but root could raise it again for the next job.
+    getrlimit(RLIMIT_CPU, &cpu_time_);
+    cpu_time_ = lowered(cpu_time_, whole_seconds(program.cpu_seconds));
+  }
+
+  /// 0, or why the program does not run. `process` may have to be waited for even then.
+  int run(pid_t& process) {
+    // No handler of ours may run in the child, in memory that is not the child's.
+    sigset_t all;
+    sigset_t before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    process = vfork();
+    if (process == 0) become_program();
+    const int error = process < 0 ? errno : 0;
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    report_.close();
+    return error != 0 ? error : reported_failure();
+  }
+
+ private:
+  static Descriptor moved_up(const Program& program, int descriptor) {
+    Descriptor moved(fcntl(descriptor, F_DUPFD_CLOEXEC, kFirstUnused));
+    if (!moved) fail(program, errno);
+    return moved;
+  }
+
+  /// exec closes the pipe without a word.
+  int reported_failure() const {
+    int error = 0;
+    while (read(failure_.get(), &error, sizeof error) < 0 && errno == EINTR) {
+    }
+    return error;
+  }
+
+  [[noreturn]] void become_program() {
+    setpgid(0, 0);
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent_) _exit(EXIT_FAILURE);  // it ended before it could be tied to
+    for (int target = 0; target < kFirstUnused; ++target)
+      if (sources_[target] && dup2(sources_[target].get(), target) < 0) give_up();
+    const int first_unused = sources_[kAnswersDescriptor] ? kFirstUnused : kAnswersDescriptor;
+    if (close_range(first_unused, UINT_MAX, CLOSE_RANGE_CLOEXEC) != 0) give_up();
+    if (setrlimit(RLIMIT_CORE, &no_core_) != 0) give_up();
+    if (setrlimit(RLIMIT_CPU, &cpu_time_) != 0) give_up();
+    if (setrlimit(RLIMIT_AS, &address_space_) != 0) give_up();
+    reset_signals();
+    execv(arguments_.front(), arguments_.data());
+    give_up();
+  }
+
+  /// exec resets handlers, but what is ignored stays ignored and what is blocked stays blocked.
+  void reset_signals() const {
+    struct sigaction action = {};
+    action.sa_handler = SIG_DFL;
+    for (int number = 1; number < NSIG; ++number) sigaction(number, &action, nullptr);
+    sigset_t none;
+    sigemptyset(&none);
+    sigprocmask(SIG_SETMASK, &none, nullptr);
+  }
+
+  [[noreturn]] void give_up() const {
+    const int error = errno;
+    if (write(report_.get(), &error, sizeof error) < 0) _exit(EXIT_FAILURE);
+    _exit(EXIT_FAILURE);
+  }
+
+  const pid_t parent_ = getpid();
+  const rlimit no_core_ = {0, 0};
+  std::vector<char*> arguments_;
+  Descriptor sources_[kFirstUnused];  ///< [d] becomes descriptor d
+  Descriptor failure_;                ///< where errno of a failure arrives
+  Descriptor report_;                 ///< where it is sent
+  rlimit address_space_ = {};
+  rlimit cpu_time_ = {};
+};
+
+}  // namespace
+
+pid_t spawn(const Program& program) {
+  Launch launch(program);
+  pid_t process = -1;
+  const int error = launch.run(process);
+  if (error == 0) return process;
+  while (process > 0 && waitpid(process, nullptr, 0) < 0 && errno == EINTR) {
+  }
+  fail(program, error);
+}
+
+Descriptor watch(pid_t process) {
+  // Not pidfd_open: its header in glibc 2.36 is not one for C++.
+  Descriptor descriptor(static_cast<int>(syscall(SYS_pidfd_open, process, 0)));
+  if (!descriptor)
+    throw std::system_error(errno, std::generic_category(), "cannot watch a process");
+  return descriptor;
+}
+
+void limit_cpu_time(pid_t process, double seconds) {
+  rlimit limit = {};
+  if (prlimit(process, RLIMIT_CPU, nullptr, &limit) == 0) {
+    limit = lowered(limit, whole_seconds(seconds));
+    if (prlimit(process, RLIMIT_CPU, &limit, nullptr) == 0) return;
+  }
+  if (errno == ESRCH) return;  // it has ended
+  throw std::system_error(errno, std::generic_category(), "cannot limit the CPU time of a process");
+}
+
+}  // namespace semigeo::engine
