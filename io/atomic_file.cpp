@@ -13,18 +13,13 @@
 
 #include "io/chunk_codec.hpp"
 #include "io/error.hpp"
+#include "io/file_descriptor.hpp"
 
 namespace semigeo::io {
 namespace {
 
 constexpr std::string_view kSuffix = ".partial";
 constexpr std::size_t kLongestName = 255;
-
-std::string host_name() {
-  char name[256] = {};
-  if (gethostname(name, sizeof name - 1) != 0 || name[0] == '\0') return "localhost";
-  return name;
-}
 
 std::filesystem::path folder_of(const std::filesystem::path& path) {
   return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
@@ -47,24 +42,9 @@ std::string temporary_name(std::string name) {
   return std::string(".").append(name).append(suffix);
 }
 
-class Descriptor {
- public:
-  Descriptor(const std::filesystem::path& path, int flags)
-      : descriptor_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
-  ~Descriptor() { close(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  explicit operator bool() const { return descriptor_ >= 0; }
-  int get() const { return descriptor_; }
-  int close() { return descriptor_ < 0 ? 0 : ::close(std::exchange(descriptor_, -1)); }
-
- private:
-  int descriptor_;
-};
-
 void sync_path(const std::filesystem::path& path, const std::filesystem::path& shown_as,
                int flags) {
-  const Descriptor descriptor(path, O_RDONLY | flags);
+  const FileDescriptor descriptor(path, O_RDONLY | flags);
   if (!descriptor) fail(shown_as, "cannot open it to force it to the disk", errno);
   // Some network file systems know no fsync of a folder and say so with EINVAL.
   if (fsync(descriptor.get()) != 0 && errno != EINVAL)
@@ -87,6 +67,12 @@ pid_t owner_of(std::string_view name, std::string_view host) {
 }
 
 }  // namespace
+
+std::string host_name() {
+  char name[256] = {};
+  if (gethostname(name, sizeof name - 1) != 0 || name[0] == '\0') return "localhost";
+  return name;
+}
 
 AtomicFile::AtomicFile(std::filesystem::path final_path)
     : final_path_(std::move(final_path)),
@@ -116,7 +102,7 @@ void AtomicFile::commit() {
 void write_file_atomically(const std::filesystem::path& path, std::string_view content) {
   AtomicFile file(path);
   {
-    Descriptor descriptor(file.temporary_path(), O_WRONLY | O_CREAT | O_TRUNC);
+    FileDescriptor descriptor(file.temporary_path(), O_WRONLY | O_CREAT | O_TRUNC);
     if (!descriptor) fail(path, "cannot create it", errno);
     while (!content.empty()) {
       const ssize_t written = ::write(descriptor.get(), content.data(), content.size());

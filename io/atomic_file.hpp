@@ -1,9 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace semigeo::io {
+
+/// By what temporary files and locks name this host; "localhost" if it has no name.
+std::string host_name();
 
 /// A file that appears under its final name whole or not at all. It is written under a temporary
 /// name in the same folder, ".<name>.<host>.<pid>.partial", and renamed by `commit`; without a

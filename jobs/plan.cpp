@@ -188,9 +188,13 @@ std::string job_key(const std::string& name, const std::string& input_xxh3,
 }
 
 std::vector<PlannedJob> plan_jobs(const RunConfig& config) {
+  return plan_jobs(config, find_scans(config.inputs, config.archive));
+}
+
+std::vector<PlannedJob> plan_jobs(const RunConfig& config, const std::vector<FoundScan>& scans) {
   std::vector<PlannedJob> plan;
   std::vector<Unnamed> unnamed;
-  for (const FoundScan& scan : find_scans(config.inputs, config.archive)) {
+  for (const FoundScan& scan : scans) {
     PlannedJob planned;
     planned.job.input = scan.input;
     planned.job.input_name = io::as_utf8(scan.relative);

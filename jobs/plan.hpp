@@ -50,6 +50,8 @@ std::string job_key(const std::string& name, const std::string& input_xxh3,
                     const SurfaceParameters& parameters);
 
 /// Hashes the scans and compares each key with that of the dataset in the archive. Reads only.
+std::vector<PlannedJob> plan_jobs(const RunConfig& config, const std::vector<FoundScan>& scans);
+/// Of all scans that the configuration names.
 std::vector<PlannedJob> plan_jobs(const RunConfig& config);
 
 /// Reads every array of the datasets that count as up to date, as verify_datasets does, and plans

@@ -10,6 +10,7 @@ namespace semigeo::jobs::cli {
 inline constexpr int kAllDone = 0;
 inline constexpr int kSomeFailed = 1;
 inline constexpr int kUsage = 2;
+inline constexpr int kLocked = 73;  ///< another run has the archive
 
 /// A command's options are bound when it is added; when the command line names it, it stores its
 /// exit code.

@@ -314,11 +314,20 @@ class OutputFolderTest(UnprivilegedTest):
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assertIn("1 up to date", process.stdout)
 
+    def test_a_read_only_archive_in_which_something_is_to_be_made_is_named(self):
+        self.run_scans("--levels", 1)
+        (self.archive / "scans/a.ply.vtkhdf").unlink()
+        self.archive.chmod(0o555)
+        process = self.run_unprivileged(self.archive)
+        self.assertEqual(process.returncode, 1)
+        self.assertIn(f"semigeo: {self.archive / 'lock'}: cannot be written: ", process.stderr)
+        self.assertEqual(process.stdout, "")
+
     def test_a_read_only_folder_of_datasets_fails_each_scan_by_name(self):
         self.run_scans("--levels", 1)
         (self.archive / "scans/a.ply.vtkhdf").unlink()
         (self.archive / "scans").chmod(0o555)
-        self.archive.chmod(0o555)
+        self.archive.chmod(0o777)
         process = self.run_unprivileged(self.archive)
         self.assertEqual(process.returncode, 1)
         self.assertIn("failed: ", process.stdout)

@@ -117,9 +117,9 @@ class InterruptionTest(SemigeoTest):
         self.assert_same_archives(self.archive, self.undisturbed)
 
     def test_two_runs_at_once_do_no_harm(self):
-        processes = [self.start(), self.start()]
-        for process in processes:
-            self.assertEqual(process.wait(TIMEOUT), 0)
+        codes = {process.wait(TIMEOUT) for process in [self.start(), self.start()]}
+        self.assertIn(0, codes)  # the other finds the archive locked, or all done
+        self.assertLessEqual(codes, {0, 73})
         self.assert_same_archives(self.archive, self.undisturbed)
 
 

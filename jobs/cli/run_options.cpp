@@ -1,0 +1,209 @@
+#include "jobs/cli/run_options.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "io/utf8.hpp"
+
+namespace semigeo::jobs::cli {
+namespace {
+
+/// Levels at most under --schedule octaves: then a patch reaches over a thousand edges.
+constexpr int kMostOctaveLevels = 16;
+
+/// CLI::Range lets it pass.
+std::string refuse_nan(const std::string& text) {
+  double value = 0;
+  return CLI::detail::lexical_cast(text, value) && std::isnan(value) ? "give a number" : "";
+}
+
+/// "0.1" is in mean edge lengths, "0.1mm" in the length unit mm.
+void set_tolerance(const std::string& text, SurfaceParameters& parameters) {
+  if (text.empty()) return;
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const std::string unit(end, text.data() + text.size());
+  if (error != std::errc() || !(value > 0) || !std::isfinite(value))
+    throw CLI::ValidationError("--decimate", "give a positive number, alone or with a unit");
+  if (!unit.empty() && unit != parameters.length_unit)
+    throw CLI::ValidationError("--decimate", "the scans' unit is " + parameters.length_unit +
+                                                 ", not " + unit + "; give --unit " + unit +
+                                                 " if it is");
+  parameters.preparation.decimate = value;
+  parameters.preparation.decimate_in_length_units = !unit.empty();
+}
+
+/// What is done to a scan before it is smoothed.
+void add_preparation_options(CLI::App* command, RunOptions& options) {
+  SurfaceParameters& surface = options.config.surface;
+  command
+      ->add_option("--fill-holes", surface.preparation.fill_holes,
+                   "Fill holes of at most so many edges; outer boundaries stay. 0: none")
+      ->check(CLI::Range(0, 1000000));
+  command->add_option("--decimate", options.decimate,
+                      "Remove vertices that lie this close to their surroundings: in mean edge\n"
+                      "lengths (0.1), or in the unit that --unit names (0.05mm)");
+  command
+      ->add_option("--target-vertices", surface.preparation.target_vertices,
+                   "Remove vertices, nearest to their surroundings first, until so many are left.\n"
+                   "0: no limit")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 31));
+}
+
+/// Levels, patches and steps.
+void add_evolution_options(CLI::App* command, RunOptions& options) {
+  SurfaceParameters& surface = options.config.surface;
+  command->add_option("--levels", surface.levels, "Smoothing iterations; every level is stored")
+      ->check(CLI::Range(0, 999));
+  command
+      ->add_option("--surface", options.surface,
+                   "What patches sample: quadratic faces, or flat ones as in the thesis")
+      ->check(CLI::IsMember({"curved", "flat"}));
+  command
+      ->add_option("--coordinates", options.coordinates,
+                   "How patches are laid: a base line and its perpendiculars, or rays")
+      ->check(CLI::IsMember({"semigeodesic", "polar"}));
+  command
+      ->add_option("--schedule", options.schedule,
+                   "Sample distance from level to level: the same, as in the thesis, or growing\n"
+                   "with the scale reached, so that two levels double it")
+      ->check(CLI::IsMember({"uniform", "octaves"}));
+  command
+      ->add_option(
+          "--rescale", options.rescale,
+          "What each part gets back after a uniform smoothing: its size (radius of gyration),\n"
+          "its mean edge length, as in the thesis, or nothing. Noise makes edges longer: noisy\n"
+          "scans swell by the second")
+      ->check(CLI::IsMember({"size", "edges", "none"}));
+  command->add_flag("--no-remesh", options.no_remesh,
+                    "Keep the connectivity of level 0: no odd triangles removed, no necks torn,\n"
+                    "no small parts dropped");
+  command->add_flag("--principal", surface.evolution.principal,
+                    "Store principal curvatures and their directions as well");
+  command
+      ->add_option("--step", surface.evolution.step_factor,
+                   "Sample distance of patches at level 0, in mean edge lengths")
+      ->check(CLI::Range(0.05, 20.0))
+      ->check(refuse_nan);
+}
+
+/// Maxima, and the level that counts.
+void add_feature_options(CLI::App* command, RunOptions& options) {
+  FeatureOptions& features = options.config.surface.features;
+  command
+      ->add_option(
+          "--feature-radius", features.radius,
+          "Maxima of curvature outdo all of their sign within so many scales of the level.\n"
+          "0: only the ring of neighbours, as in the thesis")
+      ->check(CLI::Range(0.0, 20.0))
+      ->check(refuse_nan);
+  command
+      ->add_option("--feature-completeness", features.min_completeness,
+                   "Vertices with less of their patch are no features: 1 is all of it")
+      ->check(CLI::Range(0.0, 1.0))
+      ->check(refuse_nan);
+  command
+      ->add_option("--level", options.level,
+                   "The level for recognition; else that at which the number of features changes\n"
+                   "least")
+      ->default_str("")
+      ->check(CLI::Range(0, 999));
+}
+
+/// How datasets are stored and labelled.
+void add_storage_options(CLI::App* command, RunOptions& options) {
+  SurfaceParameters& surface = options.config.surface;
+  command->add_option("--compression", options.compression, "Of the stored arrays")
+      ->check(CLI::IsMember({"deflate", "none"}));
+  command->add_option("--unit", surface.length_unit, "Length unit of the scans, as a label")
+      ->check([](const std::string& unit) -> std::string {
+        if (!io::is_utf8(unit)) return "is not UTF-8; give a short name such as mm or inch";
+        const bool plain = !unit.empty() && unit.size() <= 32 &&
+                           unit.find_first_of("\"\\\n\r\t") == std::string::npos;
+        return plain ? std::string() : "give a short name such as mm or inch";
+      });
+}
+
+}  // namespace
+
+void add_run_options(CLI::App* command, RunOptions& options) {
+  RunConfig& config = options.config;
+  command
+      ->add_option("scans", config.inputs,
+                   "Scans (.ply .obj .off .stl, each also .gz) and folders of them")
+      ->default_str("")
+      ->required()
+      ->configurable(false);
+  command->add_option("-o,--output", config.archive, "The archive: a folder, made if need be")
+      ->required()
+      ->configurable(false);
+  add_preparation_options(command, options);
+  add_evolution_options(command, options);
+  add_feature_options(command, options);
+  add_storage_options(command, options);
+  command->add_option("--threads", config.threads, "Threads at once; 0: one per core")
+      ->check(CLI::Range(0, 4096));
+  command->add_flag("--json", options.json, "Results as JSON on stdout")->configurable(false);
+  command
+      ->add_flag("--verify", options.verify,
+                 "Read every array of what counts as up to date; make again what is damaged")
+      ->configurable(false);
+  command->add_flag("--dry-run", options.dry_run, "Say what would run, and why; write nothing")
+      ->configurable(false);
+}
+
+void apply_words(RunOptions& options) {
+  SurfaceParameters& parameters = options.config.surface;
+  set_tolerance(options.decimate, parameters);
+  parameters.evolution.curved = options.surface == "curved";
+  parameters.evolution.rescale = options.rescale == "size"    ? Rescale::size
+                                 : options.rescale == "edges" ? Rescale::edges
+                                                              : Rescale::none;
+  parameters.evolution.remesh = !options.no_remesh;
+  if (options.coordinates == "polar")
+    parameters.evolution.coordinates = kernels::Coordinates::polar;
+  if (options.schedule == "octaves") {
+    parameters.evolution.schedule = Schedule::octaves;
+    if (parameters.levels > kMostOctaveLevels)
+      throw CLI::ValidationError("--levels",
+                                 "two levels of --schedule octaves double the scale; "
+                                 "give at most " +
+                                     std::to_string(kMostOctaveLevels));
+  }
+  if (options.level > parameters.levels)
+    throw CLI::ValidationError("--level", "the levels are 0 to " +
+                                              std::to_string(parameters.levels) +
+                                              "; give one of them, or more --levels");
+  if (options.level >= 0) parameters.recognition_level = options.level;
+  options.config.surface.compression =
+      options.compression == "deflate" ? io::Compression::deflate : io::Compression::none;
+}
+
+std::string config_text(const RunOptions& options) {
+  const SurfaceParameters& p = options.config.surface;
+  std::string text = "# Effective configuration; use it again with --config.\n[run]\n";
+  // JSON's numbers, booleans and strings are TOML's.
+  const auto add = [&text](const char* name, const nlohmann::json& value) {
+    text += std::string(name) + " = " + value.dump() + '\n';
+  };
+  add("fill-holes", p.preparation.fill_holes);
+  add("decimate", options.decimate);
+  add("target-vertices", p.preparation.target_vertices);
+  add("levels", p.levels);
+  add("surface", options.surface);
+  add("coordinates", options.coordinates);
+  add("schedule", options.schedule);
+  add("rescale", options.rescale);
+  add("no-remesh", options.no_remesh);
+  add("principal", p.evolution.principal);
+  add("step", p.evolution.step_factor);
+  add("feature-radius", p.features.radius);
+  add("feature-completeness", p.features.min_completeness);
+  if (p.recognition_level) add("level", *p.recognition_level);
+  add("compression", options.compression);
+  add("unit", p.length_unit);
+  return text;
+}
+
+}  // namespace semigeo::jobs::cli
