@@ -24,20 +24,14 @@ void require_format(const Hdf5File& file) {
                 "use the version of semigeo that made it, or compute it again");
 }
 
-bool is_complete(const Hdf5File& file) {
-  return file.has_attribute("/", "complete") &&
-         file.read_attribute_as<std::int64_t>("/", "complete") == 1;
-}
-
-std::optional<std::string> text_of_complete(const std::filesystem::path& path, const char* name) {
-  try {
-    const Hdf5File file = Hdf5File::open(path);
-    require_format(file);
-    if (!is_complete(file)) return std::nullopt;
-    return file.read_attribute_as<std::string>("/", name);
-  } catch (const Error&) {
-    return std::nullopt;
-  }
+/// Refuses other formats, versions of the future, and unfinished files.
+Hdf5File open_complete(const std::filesystem::path& path) {
+  Hdf5File file = Hdf5File::open(path);
+  require_format(file);
+  if (!file.has_attribute("/", "complete") ||
+      file.read_attribute_as<std::int64_t>("/", "complete") != 1)
+    file.refuse("", "was not written to its end");
+  return file;
 }
 
 const LevelArray* find_array(std::string_view name) {
@@ -52,9 +46,7 @@ std::string level_path(std::int64_t level) {
   return "/levels/" + std::string(digits.size() < 3 ? 3 - digits.size() : 0, '0') + digits;
 }
 
-Dataset::Dataset(const std::filesystem::path& path) : file_(Hdf5File::open(path)) {
-  require_format(file_);
-  if (!is_complete(file_)) file_.refuse("", "was not written to its end");
+Dataset::Dataset(const std::filesystem::path& path) : file_(open_complete(path)) {
   digest_ = text("digest");
   creator_version_ = text("creator_version");
   header_.parameters_json = text("parameters");
@@ -153,12 +145,15 @@ void Dataset::verify() const {
     file_.refuse("attribute digest", "is " + digest_ + ", but the content has the digest " + found);
 }
 
-std::optional<std::string> complete_job_key(const std::filesystem::path& path) {
-  return text_of_complete(path, "job_key");
-}
-
-std::optional<std::string> complete_input_xxh3(const std::filesystem::path& path) {
-  return text_of_complete(path, "input_xxh3");
+DatasetOrigin read_origin(const std::filesystem::path& path) {
+  const Hdf5File file = open_complete(path);
+  const auto text = [&](const char* name) {
+    return file.read_attribute_as<std::string>("/", name);
+  };
+  return {.job_key = text("job_key"),
+          .input_xxh3 = text("input_xxh3"),
+          .parameters_json = text("parameters"),
+          .creator_version = text("creator_version")};
 }
 
 }  // namespace semigeo::io

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -70,10 +69,16 @@ class Dataset {
   bool filled_ = false;
 };
 
-/// The job key of a complete dataset; nothing if the file is absent, unreadable or incomplete.
-/// Reads a few kB: what a scan of the whole archive can afford for every file.
-std::optional<std::string> complete_job_key(const std::filesystem::path& path);
-/// Likewise the XXH3_128 of the scan it was made of.
-std::optional<std::string> complete_input_xxh3(const std::filesystem::path& path);
+/// What the root of a dataset says of where it comes from.
+struct DatasetOrigin {
+  std::string job_key;
+  std::string input_xxh3;       ///< XXH3_128 of the scan it was made of
+  std::string parameters_json;  ///< that it was made with
+  std::string creator_version;  ///< of the program that made it
+};
+
+/// Reads a few kB: what a scan of the whole archive can afford for every file. Error if the file is
+/// absent, unreadable, of another format or version, or incomplete.
+DatasetOrigin read_origin(const std::filesystem::path& path);
 
 }  // namespace semigeo::io

@@ -1,16 +1,13 @@
 #include "jobs/plan.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <iterator>
-#include <set>
 #include <utility>
 
 #include "io/dataset.hpp"
 #include "io/error.hpp"
 #include "io/file_digest.hpp"
-#include "io/scan_reader.hpp"
 #include "io/utf8.hpp"
 #include "io/xdmf.hpp"
 #include "jobs/sources.hpp"
@@ -20,131 +17,48 @@ namespace semigeo::jobs {
 namespace {
 
 namespace fs = std::filesystem;
+using Kind = Reason::Kind;
 
 /// Part of every key: raised whenever the same scan and parameters give other bytes.
 constexpr const char* kSurfaceJobVersion = "surface 9";
-constexpr std::size_t kSuffixDigits = 8;
-constexpr std::size_t kMaxNameLength = 180;
-
-std::string short_hash(const std::string& text) {
-  return io::xxh3_of_text(text).substr(0, kSuffixDigits);
+std::string key_of(const std::string& name, const std::string& input_xxh3,
+                   const std::string& parameters_json) {
+  return io::xxh3_of_text(std::string(kSurfaceJobVersion) + '\n' + parameters_json + '\n' + name +
+                          '\n' + input_xxh3);
 }
 
-bool is_safe(char c) {
-  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '-' || c == '_';
+/// What differs between what a dataset was made of and what the job would make it of.
+std::vector<Reason> differences(const io::DatasetOrigin& origin, const SurfaceJob& job,
+                                const std::string& parameters_json) {
+  std::vector<Reason> reasons;
+  if (origin.input_xxh3 != job.input_xxh3)
+    reasons.push_back({.kind = Kind::kScan, .before = origin.input_xxh3, .now = job.input_xxh3});
+  std::ranges::move(parameter_differences(origin.parameters_json, parameters_json),
+                    std::back_inserter(reasons));
+  // What this program would have called the same thing says whether it would have made the same.
+  if (origin.job_key != key_of(job.name, origin.input_xxh3, origin.parameters_json))
+    reasons.push_back({.kind = Kind::kProgram, .before = origin.creator_version});
+  return reasons;
 }
 
-/// Whether "__" in the name could come from anything but a joint of folders.
-bool has_misleading_underscore(const std::string& path) {
-  return path.find("__") != std::string::npos || path.find("_/") != std::string::npos ||
-         path.find("/_") != std::string::npos;
-}
-
-std::string dataset_name(const fs::path& relative) {
-  const std::string path = relative.generic_string();
-  std::string name;
-  bool exact = !has_misleading_underscore(path);
-  for (const char c : path) {
-    if (c == '/') {
-      name += "__";
-    } else if (is_safe(c)) {
-      name += c;
-    } else {
-      name += '_';
-      exact = false;
-    }
+std::vector<Reason> reasons_of_dataset(const SurfaceJob& job, const std::string& parameters_json) {
+  try {
+    return differences(io::read_origin(job.output), job, parameters_json);
+  } catch (const io::Error& error) {
+    return {{.kind = Kind::kUnusableDataset, .now = error.problem()}};
   }
-  if (name.size() > kMaxNameLength) {
-    name = name.substr(name.size() - kMaxNameLength);
-    exact = false;
-  }
-  if (name.starts_with('.')) {  // a hidden dataset would be passed over
-    name.front() = '_';
-    exact = false;
-  }
-  return exact ? name : name + "-" + short_hash(path);
-}
-
-bool is_hidden(const fs::path& path) {
-  return path.filename().string().starts_with('.');
-}
-
-/// By which two paths to one file are known; links that lead nowhere or in circles are themselves.
-fs::path identity(const fs::path& file) {
-  std::error_code error;
-  fs::path canonical = fs::weakly_canonical(file, error);
-  return error ? fs::absolute(file).lexically_normal() : canonical;
-}
-
-FoundScan found_scan(const fs::path& input, const fs::path& relative) {
-  return {input, relative.generic_string(), dataset_name(relative), identity(input), ""};
-}
-
-io::Error unsearchable(const fs::path& folder, const std::error_code& error) {
-  return {folder, "", "cannot be searched for scans: " + error.message(), "check its permissions"};
-}
-
-/// The scans of one folder, and in `folders` those below it. Returns why it cannot be searched.
-std::error_code list_folder(const fs::path& folder, const fs::path& archive,
-                            std::vector<fs::path>& files, std::vector<fs::path>& folders) {
-  std::error_code error;
-  fs::directory_iterator entry(folder, error);
-  for (const fs::directory_iterator end; !error && entry != end; entry.increment(error)) {
-    std::error_code ignored;
-    if (is_hidden(entry->path())) continue;
-    if (entry->is_directory(ignored)) {
-      if (!entry->is_symlink(ignored) && !fs::equivalent(entry->path(), archive, ignored))
-        folders.push_back(entry->path());
-    } else if (io::scan_format(entry->path())) {
-      files.push_back(entry->path());
-    }
-  }
-  return error;
-}
-
-void search_folder(const fs::path& top, const fs::path& archive, std::vector<FoundScan>& found) {
-  std::vector<fs::path> files;
-  std::vector<fs::path> folders = {top};
-  std::vector<FoundScan> unsearched;
-  while (!folders.empty()) {
-    const fs::path folder = std::move(folders.back());
-    folders.pop_back();
-    const std::error_code error = list_folder(folder, archive, files, folders);
-    if (!error) continue;
-    if (folder == top) throw unsearchable(folder, error);
-    unsearched.push_back(found_scan(folder, folder.lexically_relative(top)));
-    unsearched.back().error = unsearchable(folder, error).what();
-  }
-  std::sort(files.begin(), files.end());
-  for (const fs::path& file : files)
-    found.push_back(found_scan(file, file.lexically_relative(top)));
-  std::ranges::sort(unsearched, {}, &FoundScan::input);
-  std::ranges::move(unsearched, std::back_inserter(found));
-}
-
-void add_file(const fs::path& file, std::vector<FoundScan>& found) {
-  if (!io::scan_format(file))
-    throw io::Error(file, "", "is not a scan that semigeo reads",
-                    "give .ply, .obj, .off or .stl files, also as .gz, or folders of them");
-  found.push_back(found_scan(file, file.filename()));
-}
-
-fs::path output_of(const fs::path& archive, const std::string& name) {
-  return archive / "scans" / (name + ".vtkhdf");
 }
 
 /// Compares the dataset in the archive, if there is one, with what the job would make.
-void decide(PlannedJob& planned) {
+void decide(PlannedJob& planned, const std::string& parameters_json, DigestCache& cache) {
   const SurfaceJob& job = planned.job;
   std::error_code ignored;
   if (!fs::exists(job.output, ignored)) {
-    planned.reason = "no dataset yet";
-  } else if (const auto key = io::complete_job_key(job.output); !key) {
-    planned.reason = "the dataset is damaged or incomplete";
-  } else if (*key != job.key) {
-    planned.reason = "the scan, the parameters or the version changed";
+    planned.reasons = {{.kind = Kind::kNoDataset}};
+  } else if (const auto keys = cache.dataset_keys(job.name); !keys || keys->job_key != job.key) {
+    planned.reasons = reasons_of_dataset(job, parameters_json);
   } else if (!fs::exists(io::sidecar_of(job.output), ignored)) {
-    planned.reason = "its .xdmf is missing";
+    planned.reasons = {{.kind = Kind::kNoSidecar}};
     planned.sidecar_only = true;
   } else {
     planned.up_to_date = true;
@@ -163,62 +77,42 @@ bool sidecar_is_right(const fs::path& dataset) {
 
 }  // namespace
 
-std::vector<FoundScan> find_scans(const std::vector<fs::path>& inputs, const fs::path& archive) {
-  std::vector<FoundScan> found;
-  for (const fs::path& input : inputs) {
-    std::error_code error;
-    const fs::file_status status = fs::status(input, error);
-    if (!fs::exists(status)) throw io::Error(input, "", "no such file or folder", "check the path");
-    if (fs::is_directory(status)) {
-      search_folder(input, archive, found);
-    } else {
-      add_file(input, found);
-    }
-  }
-
-  std::set<fs::path> seen;
-  std::erase_if(found, [&](const FoundScan& scan) { return !seen.insert(scan.file).second; });
-  return found;
-}
-
 std::string job_key(const std::string& name, const std::string& input_xxh3,
                     const SurfaceParameters& parameters) {
-  return io::xxh3_of_text(std::string(kSurfaceJobVersion) + '\n' + to_json(parameters) + '\n' +
-                          name + '\n' + input_xxh3);
+  return key_of(name, input_xxh3, to_json(parameters));
 }
 
 std::vector<PlannedJob> plan_jobs(const RunConfig& config) {
-  return plan_jobs(config, find_scans(config.inputs, config.archive));
+  DigestCache nothing(config.archive);
+  return plan_jobs(config, find_scans(config.inputs, config.archive), nothing);
 }
 
-std::vector<PlannedJob> plan_jobs(const RunConfig& config, const std::vector<FoundScan>& scans) {
-  std::vector<PlannedJob> plan;
+std::vector<PlannedJob> plan_jobs(const RunConfig& config, const std::vector<FoundScan>& scans,
+                                  DigestCache& cache) {
+  std::vector<PlannedJob> plan(scans.size());
   std::vector<Unnamed> unnamed;
-  for (const FoundScan& scan : scans) {
-    PlannedJob planned;
-    planned.job.input = scan.input;
-    planned.job.input_name = io::as_utf8(scan.relative);
-    planned.scan = scan.file;
-    planned.error = scan.error;
-    try {
-      if (planned.error.empty()) planned.job.input_xxh3 = io::xxh3_of_file(scan.input);
-    } catch (const std::exception& e) {
-      planned.error = e.what();
-    }
-    unnamed.push_back({scan.name, scan.file, planned.job.input_xxh3});
-    plan.push_back(std::move(planned));
+  std::vector<ScanDigest> digests = cache.scan_digests(scans, config.threads);
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    PlannedJob& planned = plan[i];
+    planned.job.input = scans[i].input;
+    planned.job.input_name = io::as_utf8(scans[i].relative);
+    planned.job.input_xxh3 = std::move(digests[i].xxh3);
+    planned.scan = scans[i].file;
+    planned.error = std::move(digests[i].error);
+    unnamed.push_back({scans[i].name, scans[i].file, planned.job.input_xxh3});
   }
-  const auto names =
-      choose_names(unnamed, Sources::read(config.archive),
-                   [&](const std::string& name, const std::string& xxh3) {
-                     return io::complete_input_xxh3(output_of(config.archive, name)) == xxh3;
-                   });
+  const auto names = choose_names(unnamed, Sources::read(config.archive),
+                                  [&](const std::string& name, const std::string& xxh3) {
+                                    const auto keys = cache.dataset_keys(name);
+                                    return keys && keys->input_xxh3 == xxh3;
+                                  });
+  const std::string parameters_json = to_json(config.surface);
   for (std::size_t i = 0; i < plan.size(); ++i) {
     SurfaceJob& job = plan[i].job;
     job.name = names[i];
-    job.output = output_of(config.archive, job.name);
-    job.key = job_key(job.name, job.input_xxh3, config.surface);
-    if (plan[i].error.empty()) decide(plan[i]);
+    job.output = dataset_path(config.archive, job.name);
+    job.key = key_of(job.name, job.input_xxh3, parameters_json);
+    if (plan[i].error.empty()) decide(plan[i], parameters_json, cache);
   }
   return plan;
 }
@@ -235,10 +129,10 @@ void verify_plan(std::vector<PlannedJob>& plan, int at_once) {
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     PlannedJob& planned = *jobs[i];
     if (!problems[i].empty()) {
-      planned.reason = "its arrays are damaged";
+      planned.reasons = {{.kind = Kind::kDamagedArrays, .now = problems[i]}};
       planned.sidecar_only = false;
     } else if (planned.up_to_date && !sidecar_is_right(datasets[i])) {
-      planned.reason = "its .xdmf is damaged";
+      planned.reasons = {{.kind = Kind::kDamagedSidecar}};
       planned.sidecar_only = true;
     } else {
       continue;

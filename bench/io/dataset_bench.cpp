@@ -140,7 +140,7 @@ BENCHMARK(read_level)->Unit(benchmark::kMillisecond);
 /// What a run costs for every dataset that is up to date, besides hashing its scan.
 void read_job_key(benchmark::State& state) {
   const WrittenDataset dataset;
-  for (auto _ : state) benchmark::DoNotOptimize(io::complete_job_key(dataset.path));
+  for (auto _ : state) benchmark::DoNotOptimize(io::read_origin(dataset.path));
 }
 BENCHMARK(read_job_key)->Unit(benchmark::kMicrosecond);
 

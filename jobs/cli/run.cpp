@@ -68,14 +68,31 @@ void prepare_archive(const fs::path& archive, const std::string& effective_confi
   record_sources(archive, plan);
 }
 
-std::vector<PlannedJob> make_plan(const RunOptions& options, const std::vector<FoundScan>& scans) {
-  std::vector<PlannedJob> plan = plan_jobs(options.config, scans);
+std::vector<PlannedJob> make_plan(const RunOptions& options, const std::vector<FoundScan>& scans,
+                                  DigestCache& cache) {
+  // What is to be verified is not taken from memory.
+  cache = options.verify ? DigestCache(options.config.archive)
+                         : DigestCache::read(options.config.archive);
+  std::vector<PlannedJob> plan = plan_jobs(options.config, scans, cache);
   if (options.verify) verify_plan(plan, options.config.threads);
   return plan;
 }
 
+/// For the next run: it need not read what this one read or made.
+void remember_datasets(const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,
+                       DigestCache& cache) {
+  for (std::size_t i = 0; i < plan.size(); ++i)
+    if (outcomes[i].state == JobState::kDone) cache.dataset_keys(plan[i].job.name);
+  try {
+    cache.write();
+  } catch (const io::Error& e) {
+    std::fprintf(stderr, "semigeo: %s\n", e.what());  // only the next run's planning suffers
+  }
+}
+
 int dry_run(const RunOptions& options, const std::vector<FoundScan>& scans) {
-  const std::vector<PlannedJob> plan = make_plan(options, scans);
+  DigestCache cache(options.config.archive);
+  const std::vector<PlannedJob> plan = make_plan(options, scans, cache);
   print_plan(plan, options.json);
   return std::ranges::all_of(plan, is_readable) ? kAllDone : kSomeFailed;
 }
@@ -84,7 +101,8 @@ int run(const RunOptions& options, const std::vector<FoundScan>& scans,
         const std::string& effective_config) {
   const auto start = std::chrono::steady_clock::now();
   const Possession possession(options.config.archive);
-  const std::vector<PlannedJob> plan = make_plan(options, scans);
+  DigestCache cache(options.config.archive);
+  const std::vector<PlannedJob> plan = make_plan(options, scans, cache);
   if (possession.lock) {
     prepare_archive(options.config.archive, effective_config, plan);
   } else if (!std::ranges::all_of(plan, &PlannedJob::up_to_date)) {
@@ -104,6 +122,7 @@ int run(const RunOptions& options, const std::vector<FoundScan>& scans,
     outcomes = run_jobs(plan, options.config.surface, workers, progress);
     summary.vertex_levels = progress.vertex_levels();
   }
+  if (possession.lock) remember_datasets(plan, outcomes, cache);
   for (const JobOutcome& outcome : outcomes) {
     summary.done += outcome.state == JobState::kDone;
     summary.up_to_date += outcome.state == JobState::kUpToDate;

@@ -75,7 +75,7 @@ void print_plan(const std::vector<PlannedJob>& plan, bool json) {
     for (const PlannedJob& p : plan) {
       auto scan = scan_json(p);
       scan["state"] = p.up_to_date ? "up to date" : p.error.empty() ? "would run" : "unreadable";
-      if (!p.reason.empty()) scan["reason"] = p.reason;
+      if (!p.reasons.empty()) scan["reason"] = in_short(p.reasons);
       if (!p.error.empty()) scan["error"] = p.error;
       scans.push_back(std::move(scan));
     }
@@ -85,7 +85,7 @@ void print_plan(const std::vector<PlannedJob>& plan, bool json) {
   for (const PlannedJob& p : plan) {
     if (p.up_to_date) continue;
     std::printf("%s: %s\n", p.job.name.c_str(),
-                p.error.empty() ? ("would run: " + p.reason).c_str() : p.error.c_str());
+                p.error.empty() ? ("would run: " + in_short(p.reasons)).c_str() : p.error.c_str());
   }
   const auto up_to_date = std::ranges::count_if(plan, &PlannedJob::up_to_date);
   const auto unreadable = std::ranges::count_if(plan, std::not_fn(is_readable));

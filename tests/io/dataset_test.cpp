@@ -239,7 +239,7 @@ TEST(Dataset, TruncatedFilesAreRefused) {
     write_file(folder / "b.vtkhdf",
                whole.substr(0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))));
     EXPECT_NE(failure_of_verify(folder / "b.vtkhdf"), "none") << part;
-    EXPECT_EQ(complete_job_key(folder / "b.vtkhdf"), std::nullopt) << part;
+    EXPECT_THROW(read_origin(folder / "b.vtkhdf"), Error) << part;
   }
 }
 
@@ -262,19 +262,19 @@ TEST(Dataset, OtherFilesAreRefusedWithAReason) {
   torn.close();
   EXPECT_NE(failure_of_verify(folder / "torn.h5").find("not written to its end"),
             std::string::npos);
-  EXPECT_EQ(complete_job_key(folder / "torn.h5"), std::nullopt);
+  EXPECT_THROW(read_origin(folder / "torn.h5"), Error);
 }
 
 TEST(Dataset, JobKeyOfCompleteFilesOnly) {
   const tests::TemporaryFolder folder;
   tests::write_sample(folder / "a.vtkhdf");
   write_file(folder / "text.vtkhdf", "text");
-  EXPECT_EQ(complete_job_key(folder / "a.vtkhdf"), "key-of-the-job");
-  EXPECT_EQ(complete_input_xxh3(folder / "a.vtkhdf"), tests::sample_header().input_xxh3);
-  EXPECT_EQ(complete_input_xxh3(folder / "missing.vtkhdf"), std::nullopt);
-  EXPECT_EQ(complete_job_key(folder / "missing.vtkhdf"), std::nullopt);
-  EXPECT_EQ(complete_job_key(folder / "text.vtkhdf"), std::nullopt);
-  EXPECT_EQ(complete_job_key(folder.path()), std::nullopt);
+  EXPECT_EQ(read_origin(folder / "a.vtkhdf").job_key, "key-of-the-job");
+  EXPECT_EQ(read_origin(folder / "a.vtkhdf").input_xxh3, tests::sample_header().input_xxh3);
+  EXPECT_THROW(read_origin(folder / "missing.vtkhdf"), Error);
+  EXPECT_THROW(read_origin(folder / "missing.vtkhdf"), Error);
+  EXPECT_THROW(read_origin(folder / "text.vtkhdf"), Error);
+  EXPECT_THROW(read_origin(folder.path()), Error);
 }
 
 TEST(Dataset, AsksForWhatExists) {
