@@ -71,6 +71,7 @@ class ChildProcesses {
   };
   using Event = std::variant<TimedOut, Woken, Line, Ended>;
 
+  /// Where SIGCHLD is ignored, it becomes default: the kernel would keep no exit code for us.
   ChildProcesses();
   /// Kills the children that are left, and waits for them.
   ~ChildProcesses();
