@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <charconv>
+#include <fstream>
 #include <span>
 #include <string>
 #include <system_error>
@@ -66,6 +67,17 @@ pid_t owner_of(std::string_view name, std::string_view host) {
   return ours ? pid : 0;
 }
 
+/// Whether a process has ended, even if its parent has not asked about it yet.
+bool is_dead(pid_t process) {
+  if (::kill(process, 0) != 0 && errno == ESRCH) return true;
+  std::ifstream stat("/proc/" + std::to_string(process) + "/stat");
+  std::string line;
+  std::getline(stat, line);
+  const std::size_t name_end = line.rfind(')');  // the name may hold anything
+  return name_end != std::string::npos && name_end + 2 < line.size() &&
+         (line[name_end + 2] == 'Z' || line[name_end + 2] == 'X');
+}
+
 }  // namespace
 
 std::string host_name() {
@@ -122,7 +134,7 @@ int remove_stale_partials(const std::filesystem::path& folder) {
   for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
     const pid_t owner = owner_of(entry->path().filename().string(), host);
-    if (owner == 0 || ::kill(owner, 0) == 0 || errno != ESRCH) continue;
+    if (owner == 0 || !is_dead(owner)) continue;
     std::error_code ignored;
     removed += std::filesystem::remove(entry->path(), ignored) ? 1 : 0;
   }

@@ -25,6 +25,8 @@ struct SurfaceParameters {
 
 /// The parameters as JSON with sorted keys: the same parameters, the same text.
 std::string to_json(const SurfaceParameters& parameters);
+/// The parameters again. Throws std::runtime_error on a text that to_json does not give.
+SurfaceParameters parameters_from_json(const std::string& text);
 
 /// What `semigeo run` was asked to do.
 struct RunConfig {

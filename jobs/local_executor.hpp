@@ -1,33 +1,60 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "engine/parallel.hpp"
+#include "jobs/journal.hpp"
 #include "jobs/plan.hpp"
 #include "jobs/progress.hpp"
 #include "jobs/stages/surface_job.hpp"
 
 namespace semigeo::jobs {
 
-enum class JobState { kDone, kUpToDate, kFailed };
+enum class JobState {
+  kDone,
+  kUpToDate,
+  kFailed,
+  kNotRun  ///< the run stopped before
+};
 
 struct JobOutcome {
-  JobState state = JobState::kFailed;
-  std::string error;                       ///< of a failed job: one sentence
+  JobState state = JobState::kNotRun;
+  std::string error;                       ///< of a failed job: one sentence, and its last lines
   std::optional<SurfaceJobResult> result;  ///< of a job that made a dataset
   double seconds = 0;
+  double cpu_seconds = 0;
+  double peak_bytes = 0;
+  int attempts = 0;
+};
+
+/// What the jobs of a run may take; 0 = by themselves.
+struct ExecutorOptions {
+  std::filesystem::path program;     ///< of which `PROGRAM job` is a worker
+  std::filesystem::path logs;        ///< folder for what jobs print
+  int threads = 0;                   ///< at once, of all jobs; 0: one per core
+  std::uint64_t memory_bytes = 0;    ///< of all jobs that run side by side; 0: what is free
+  std::uint64_t memory_per_job = 0;  ///< address space of one; 0: several times the estimate
+  double timeout_seconds = 0;        ///< of one, by the clock; 0: many times the estimate
+  int retries = 1;                   ///< of a job that a signal or a limit ended
+  bool fail_fast = false;            ///< start nothing after the first failure
+  double most_seconds = 0;           ///< start nothing that is not expected to end in time; 0: any
 };
 
 /// By what the time that a job takes is judged: the size of its scan, 0 if that is not read.
 std::uintmax_t bytes_to_read(const PlannedJob& planned);
 
-/// Runs the jobs that are not up to date, one after the other, each on all workers. A job that
-/// fails never harms another. outcomes[i] belongs to plan[i].
+/// Runs the jobs that are not up to date in child processes, which do one job after the other: as
+/// many side by side as cores and memory admit, the longest first; one that takes more than its
+/// share of what is left gets more threads. Whatever a job does to its process - a crash, an
+/// endless loop, a memory bomb - is one failed job. The first SIGINT or SIGTERM lets the running
+/// jobs end and starts no more, the second ends them. outcomes[i] belongs to plan[i].
 std::vector<JobOutcome> run_jobs(const std::vector<PlannedJob>& plan,
-                                 const SurfaceParameters& parameters, engine::Workers& workers,
+                                 const SurfaceParameters& parameters,
+                                 const ExecutorOptions& options, Journal* journal,
                                  Progress& progress);
 
 }  // namespace semigeo::jobs

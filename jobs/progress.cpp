@@ -85,7 +85,7 @@ void Progress::scan_ended(bool ok, std::uintmax_t bytes) {
   const std::scoped_lock lock(mutex_);
   ++(ok ? done_ : failed_);
   bytes_done_ += bytes;
-  show(false);
+  show(true);
 }
 
 void Progress::say(const std::string& line) {

@@ -10,11 +10,13 @@ namespace semigeo::jobs::cli {
 inline constexpr int kAllDone = 0;
 inline constexpr int kSomeFailed = 1;
 inline constexpr int kUsage = 2;
+inline constexpr int kStoppedEarly = 75;
 inline constexpr int kLocked = 73;  ///< another run has the archive
 
 /// A command's options are bound when it is added; when the command line names it, it stores its
 /// exit code.
 void add_run(CLI::App& app, int& exit_code);
+void add_job(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);

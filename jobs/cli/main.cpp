@@ -52,6 +52,7 @@ int run(int argc, char** argv) {
   add_info(app, exit_code);
   add_check(app, exit_code);
   add_export(app, exit_code);
+  add_job(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -1,4 +1,5 @@
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -14,21 +15,25 @@
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/run_options.hpp"
 #include "jobs/cli/run_report.hpp"
+#include "jobs/journal.hpp"
 #include "jobs/local_executor.hpp"
+#include "jobs/process_identity.hpp"
+#include "jobs/utc_time.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-void measure_process(RunSummary& summary) {
+/// What this process has taken of the machine, the jobs' own processes apart.
+void add_own_costs(RunSummary& summary) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   const auto seconds = [](const timeval& t) {
     return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
   };
-  summary.cpu_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
-  summary.peak_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
+  summary.cpu_seconds += seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  summary.peak_bytes = std::max(summary.peak_bytes, 1024.0 * static_cast<double>(usage.ru_maxrss));
 }
 
 /// The archive, made if need be, for this run alone. Throws LockedError if another run has it. If
@@ -97,6 +102,77 @@ int dry_run(const RunOptions& options, const std::vector<FoundScan>& scans) {
   return std::ranges::all_of(plan, is_readable) ? kAllDone : kSomeFailed;
 }
 
+/// A name for this run that no other run of the archive has.
+std::string run_name() {
+  return utc_time() + "-" + std::to_string(getpid());
+}
+
+/// Keeps the journal of a run, if the archive lets it: nothing but estimates depends on it.
+class RunJournal {
+ public:
+  explicit RunJournal(const fs::path& archive) {
+    try {
+      journal_.emplace(archive, run_name());
+    } catch (const io::Error& e) {
+      warn(e);
+    }
+  }
+  Journal* get() { return journal_ ? &*journal_ : nullptr; }
+  void write(const JournalEvent& event) {
+    if (!journal_) return;
+    try {
+      journal_->write(event);
+    } catch (const io::Error& e) {
+      warn(e);
+      journal_.reset();
+    }
+  }
+
+ private:
+  static void warn(const io::Error& e) { std::fprintf(stderr, "semigeo: %s\n", e.what()); }
+  std::optional<Journal> journal_;
+};
+
+/// Does what is not up to date.
+std::vector<JobOutcome> execute(const RunOptions& options, const std::vector<PlannedJob>& plan,
+                                RunSummary& summary) {
+  const auto to_run = std::ranges::count(plan, false, &PlannedJob::up_to_date);
+  if (to_run == 0) {
+    JobOutcome up_to_date;
+    up_to_date.state = JobState::kUpToDate;
+    return std::vector<JobOutcome>(plan.size(), up_to_date);
+  }
+  std::uintmax_t bytes = 0;
+  for (const PlannedJob& p : plan) bytes += bytes_to_read(p);
+  const fs::path& archive = options.config.archive;
+  ExecutorOptions executor = options.executor;
+  executor.program = fs::read_symlink("/proc/self/exe");
+  executor.logs = archive / "logs";
+  executor.threads = options.config.threads;
+  RunJournal journal(archive);
+  const auto start = std::chrono::steady_clock::now();
+  journal.write(RunStarted{.version = SEMIGEO_VERSION,
+                           .host = this_process().host,
+                           .pid = getpid(),
+                           .threads = options.config.threads,
+                           .jobs = to_run,
+                           .up_to_date = std::ssize(plan) - to_run});
+  Progress progress(to_run, bytes);
+  std::vector<JobOutcome> outcomes =
+      run_jobs(plan, options.config.surface, executor, journal.get(), progress);
+  summary.vertex_levels = progress.vertex_levels();
+  RunEnded ended;
+  for (const JobOutcome& outcome : outcomes) {
+    ended.done += outcome.state == JobState::kDone;
+    ended.up_to_date += outcome.state == JobState::kUpToDate;
+    ended.failed += outcome.state == JobState::kFailed;
+    ended.cpu_seconds += outcome.cpu_seconds;
+  }
+  ended.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  journal.write(ended);
+  return outcomes;
+}
+
 int run(const RunOptions& options, const std::vector<FoundScan>& scans,
         const std::string& effective_config) {
   const auto start = std::chrono::steady_clock::now();
@@ -108,34 +184,30 @@ int run(const RunOptions& options, const std::vector<FoundScan>& scans,
   } else if (!std::ranges::all_of(plan, &PlannedJob::up_to_date)) {
     std::rethrow_exception(possession.unwritable);
   }
-  std::int64_t to_run = 0;
-  std::uintmax_t bytes = 0;
-  for (const PlannedJob& p : plan) {
-    to_run += p.up_to_date ? 0 : 1;
-    bytes += bytes_to_read(p);
-  }
-  engine::Workers workers(options.config.threads);
   RunSummary summary;
-  std::vector<JobOutcome> outcomes;
-  {
-    Progress progress(to_run, bytes);
-    outcomes = run_jobs(plan, options.config.surface, workers, progress);
-    summary.vertex_levels = progress.vertex_levels();
+  const std::vector<JobOutcome> outcomes = execute(options, plan, summary);
+  if (possession.lock) {
+    // Workers of a run that was killed may have lived a moment into this one.
+    io::remove_stale_partials(options.config.archive / "scans");
+    remember_datasets(plan, outcomes, cache);
   }
-  if (possession.lock) remember_datasets(plan, outcomes, cache);
   for (const JobOutcome& outcome : outcomes) {
     summary.done += outcome.state == JobState::kDone;
     summary.up_to_date += outcome.state == JobState::kUpToDate;
     summary.failed += outcome.state == JobState::kFailed;
+    summary.not_run += outcome.state == JobState::kNotRun;
+    summary.cpu_seconds += outcome.cpu_seconds;
+    summary.peak_bytes = std::max(summary.peak_bytes, outcome.peak_bytes);
   }
   summary.wall_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  measure_process(summary);
+  add_own_costs(summary);
   if (options.json) {
     print_json(plan, outcomes, options.config.surface, summary);
   } else {
     print_text(plan, outcomes, summary);
   }
+  if (summary.not_run > 0) return kStoppedEarly;
   return summary.failed == 0 ? kAllDone : kSomeFailed;
 }
 
@@ -175,7 +247,8 @@ void add_run(CLI::App& app, int& exit_code) {
       "What is up to date, by content, is left alone; a run that was interrupted goes on where it\n"
       "stopped. Options may also come from --config FILE. Exit codes: 0 all done, 1 some scans "
       "failed,\n"
-      "2 usage, 73 another run has the archive.\n");
+      "2 usage, 73 another run has the archive, 75 stopped early: run again to go on. The first\n"
+      "Ctrl-C lets the running jobs end, the second ends them.\n");
   add_run_options(command, *options);
   command->fallthrough();
   command->callback([options, &exit_code] {

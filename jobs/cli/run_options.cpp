@@ -1,7 +1,11 @@
 #include "jobs/cli/run_options.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "io/utf8.hpp"
@@ -125,6 +129,67 @@ void add_storage_options(CLI::App* command, RunOptions& options) {
       });
 }
 
+/// What the run and its jobs may take. None of it changes a byte of what comes out.
+void add_executor_options(CLI::App* command, RunOptions& options) {
+  ExecutorOptions& executor = options.executor;
+  const CLI::AsSizeValue size(false);
+  const CLI::AsNumberWithUnit duration(
+      std::map<std::string, double>{{"s", 1}, {"min", 60}, {"m", 60}, {"h", 3600}, {"d", 86400}},
+      CLI::AsNumberWithUnit::UNIT_OPTIONAL, "DURATION");
+  command
+      ->add_option("--threads", options.config.threads,
+                   "Threads of all jobs at once; 0: one per core")
+      ->check(CLI::Range(0, 4096));
+  command
+      ->add_option("--memory", executor.memory_bytes,
+                   "Memory of all jobs that run side by side (8G); 0: what is free")
+      ->transform(size);
+  command
+      ->add_option("--memory-per-job", executor.memory_per_job,
+                   "Address space of one job (2G); 0: several times what it should need")
+      ->transform(size);
+  command
+      ->add_option("--timeout", executor.timeout_seconds,
+                   "End a job that takes longer (30min); 0: many times what it should take")
+      ->transform(duration);
+  command->add_option("--retries", executor.retries, "Of a job that crashed, or that a limit ended")
+      ->check(CLI::Range(0, 100));
+  CLI::Option* keep_going =
+      command->add_flag("--keep-going", options.keep_going, "Go on when jobs fail: the default");
+  command->add_flag("--fail-fast", executor.fail_fast, "Start nothing after the first failure")
+      ->excludes(keep_going);
+  command
+      ->add_option("--time-limit", executor.most_seconds,
+                   "Start nothing that will not end in time (8h); 0: no limit")
+      ->transform(duration)
+      ->configurable(false);
+  command->add_option("--until", options.until, "Likewise, by the clock on the wall (06:00)")
+      ->configurable(false);
+}
+
+/// Seconds until the clock shows HH:MM next.
+double seconds_until(const std::string& clock) {
+  int hours = 0;
+  int minutes = 0;
+  char rest = 0;
+  if (std::sscanf(clock.c_str(), "%2d:%2d%c", &hours, &minutes, &rest) != 2 || hours < 0 ||
+      hours > 23 || minutes < 0 || minutes > 59)
+    throw CLI::ValidationError("--until", "give a time of day such as 06:00");
+  const std::time_t now = std::time(nullptr);
+  std::tm day = *std::localtime(&now);
+  day.tm_hour = hours;
+  day.tm_min = minutes;
+  day.tm_sec = 0;
+  day.tm_isdst = -1;
+  std::time_t then = std::mktime(&day);
+  if (then <= now) {
+    ++day.tm_mday;
+    day.tm_isdst = -1;
+    then = std::mktime(&day);
+  }
+  return std::difftime(then, now);
+}
+
 }  // namespace
 
 void add_run_options(CLI::App* command, RunOptions& options) {
@@ -142,8 +207,7 @@ void add_run_options(CLI::App* command, RunOptions& options) {
   add_evolution_options(command, options);
   add_feature_options(command, options);
   add_storage_options(command, options);
-  command->add_option("--threads", config.threads, "Threads at once; 0: one per core")
-      ->check(CLI::Range(0, 4096));
+  add_executor_options(command, options);
   command->add_flag("--json", options.json, "Results as JSON on stdout")->configurable(false);
   command
       ->add_flag("--verify", options.verify,
@@ -154,6 +218,11 @@ void add_run_options(CLI::App* command, RunOptions& options) {
 }
 
 void apply_words(RunOptions& options) {
+  if (!options.until.empty()) {
+    const double left = seconds_until(options.until);
+    double& most = options.executor.most_seconds;
+    most = most > 0 ? std::min(most, left) : left;
+  }
   SurfaceParameters& parameters = options.config.surface;
   set_tolerance(options.decimate, parameters);
   parameters.evolution.curved = options.surface == "curved";

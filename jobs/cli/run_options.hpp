@@ -4,6 +4,7 @@
 #include <string>
 
 #include "jobs/config.hpp"
+#include "jobs/local_executor.hpp"
 
 namespace semigeo::jobs::cli {
 
@@ -19,6 +20,9 @@ struct RunOptions {
   int level = -1;  ///< not told
   std::string compression = "deflate";
   bool json = false;
+  ExecutorOptions executor;
+  bool keep_going = false;  ///< said aloud
+  std::string until;        ///< "06:00", local time; empty: no end
   bool dry_run = false;
   bool verify = false;
 };

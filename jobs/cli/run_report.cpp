@@ -23,6 +23,8 @@ const char* state_name(JobState state) {
       return "done";
     case JobState::kUpToDate:
       return "up to date";
+    case JobState::kNotRun:
+      return "not run";
     case JobState::kFailed:
       break;
   }
@@ -123,6 +125,7 @@ void print_json(const std::vector<PlannedJob>& plan, const std::vector<JobOutcom
                                    {"done", summary.done},
                                    {"up_to_date", summary.up_to_date},
                                    {"failed", summary.failed},
+                                   {"not_run", summary.not_run},
                                    {"vertex_levels", summary.vertex_levels},
                                    {"vertex_levels_per_second", summary.rate()},
                                    {"wall_seconds", summary.wall_seconds},
@@ -160,9 +163,11 @@ void print_text(const std::vector<PlannedJob>& plan, const std::vector<JobOutcom
     if (outcome.state == JobState::kFailed) std::printf("failed: %s\n", outcome.error.c_str());
   const std::string rate =
       summary.vertex_levels > 0 ? short_number(summary.rate()) + " vertex levels/s; " : "";
-  std::printf("%lld done, %lld up to date, %lld failed; %s%s wall, %s CPU, %.0f MB peak\n",
+  const std::string not_run =
+      summary.not_run > 0 ? ", " + std::to_string(summary.not_run) + " not run" : "";
+  std::printf("%lld done, %lld up to date, %lld failed%s; %s%s wall, %s CPU, %.0f MB peak\n",
               static_cast<long long>(summary.done), static_cast<long long>(summary.up_to_date),
-              static_cast<long long>(summary.failed), rate.c_str(),
+              static_cast<long long>(summary.failed), not_run.c_str(), rate.c_str(),
               short_duration(summary.wall_seconds).c_str(),
               short_duration(summary.cpu_seconds).c_str(), summary.peak_bytes / 1e6);
 }

@@ -13,6 +13,7 @@ struct RunSummary {
   std::int64_t done = 0;
   std::int64_t up_to_date = 0;
   std::int64_t failed = 0;
+  std::int64_t not_run = 0;
   std::int64_t vertex_levels = 0;
   double wall_seconds = 0;
   double cpu_seconds = 0;

@@ -121,6 +121,18 @@ TEST(RemoveStalePartials, RemovesThoseOfDeadProcessesOfThisHost) {
   EXPECT_EQ(entries(folder), 0);
 }
 
+/// Whoever started it may never ask how it ended.
+TEST(RemoveStalePartials, AProcessThatNobodyWaitsForIsDeadToo) {
+  tests::TemporaryFolder folder;
+  const pid_t child = fork();
+  if (child == 0) _exit(0);
+  siginfo_t info{};
+  ASSERT_EQ(waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOWAIT), 0);
+  write(folder / (".a." + host() + "." + std::to_string(child) + ".partial"), "");
+  EXPECT_EQ(remove_stale_partials(folder.path()), 1);
+  waitpid(child, nullptr, 0);
+}
+
 TEST(RemoveStalePartials, LeavesEverythingElse) {
   const tests::TemporaryFolder folder;
   const std::string dead = std::to_string(dead_process());

@@ -38,6 +38,10 @@ TEST(ConfigTest, ParametersAreJsonWithSortedKeys) {
       R"("feature_completeness":0.75,"feature_radius":0.0,"fill_holes":40,)"
       R"("length_unit":"m\"m","level":2,"levels":3,"principal":true,)"
       R"("remesh":false,"rescale":"edges","schedule":"octaves","step":0.1,"surface":"flat","target_vertices":1993})");
+  for (const SurfaceParameters& parameters : {SurfaceParameters{}, other})
+    EXPECT_EQ(to_json(parameters_from_json(to_json(parameters))), to_json(parameters));
+  for (const char* text : {"", "{}", "[]", R"({"levels":8})"})
+    EXPECT_THROW(parameters_from_json(text), std::runtime_error) << text;
 }
 
 TEST(ConfigTest, EveryParameterShows) {

@@ -25,11 +25,14 @@ class LocalExecutorTest : public testing::Test {
     config_.inputs = {folder_ / "in"};
     config_.archive = folder_ / "archive";
     config_.surface.levels = 1;
+    options_.program = SEMIGEO_PROGRAM;
+    options_.threads = 2;
   }
   std::vector<JobOutcome> run() {
     Progress progress(0, 0);
+    options_.logs = config_.archive / "logs";
     testing::internal::CaptureStderr();
-    auto outcomes = run_jobs(plan_jobs(config_), config_.surface, workers_, progress);
+    auto outcomes = run_jobs(plan_jobs(config_), config_.surface, options_, nullptr, progress);
     said_ = testing::internal::GetCapturedStderr();
     vertex_levels_ = progress.vertex_levels();
     return outcomes;
@@ -48,7 +51,7 @@ class LocalExecutorTest : public testing::Test {
 
   tests::TemporaryFolder folder_;
   RunConfig config_;
-  engine::Workers workers_{2};
+  ExecutorOptions options_;
   std::string said_;
   std::int64_t vertex_levels_ = 0;
 };
@@ -143,9 +146,10 @@ TEST_F(LocalExecutorTest, AnOutputThatCannotBeAFolderIsNamed) {
   add("a.obj", shapes::icosphere(0));
   std::ofstream(folder_ / "file") << "in the way";
   config_.archive = folder_ / "file";
+  options_.logs = folder_ / "logs";
   Progress progress(0, 0);
   try {
-    run_jobs(plan_jobs(config_), config_.surface, workers_, progress);
+    run_jobs(plan_jobs(config_), config_.surface, options_, nullptr, progress);
     ADD_FAILURE() << "it ran";
   } catch (const io::Error& error) {
     EXPECT_EQ(error.file(), folder_ / "file/scans");
