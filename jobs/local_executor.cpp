@@ -52,7 +52,7 @@ std::uintmax_t bytes_to_read(const PlannedJob& planned) {
 
 std::vector<JobOutcome> run_jobs(const std::vector<PlannedJob>& plan,
                                  const SurfaceParameters& parameters, engine::Workers& workers,
-                                 Progress& progress) {
+                                 Progress& progress, JobListener* listener) {
   const engine::RunContext context{workers, progress, {}};
   std::set<fs::path> folders;
   for (const PlannedJob& planned : plan) folders.insert(planned.job.output.parent_path());
@@ -73,6 +73,7 @@ std::vector<JobOutcome> run_jobs(const std::vector<PlannedJob>& plan,
     }
     const auto start = std::chrono::steady_clock::now();
     progress.scan_started(planned.job.name);
+    if (listener != nullptr) listener->job_started(planned);
     JobOutcome outcome;
     if (planned.error.empty()) {
       outcome = run_job(planned, parameters, context);
@@ -81,6 +82,7 @@ std::vector<JobOutcome> run_jobs(const std::vector<PlannedJob>& plan,
     }
     outcome.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (listener != nullptr) listener->job_ended(planned, outcome);
     progress.scan_ended(outcome.state == JobState::kDone, bytes_to_read(planned));
     if (outcome.state == JobState::kFailed) progress.say("failed: " + outcome.error);
     outcomes.push_back(std::move(outcome));

@@ -21,6 +21,14 @@ struct JobOutcome {
   double seconds = 0;
 };
 
+/// Is told of each job that runs, in the thread that called run_jobs.
+class JobListener {
+ public:
+  virtual ~JobListener() = default;
+  virtual void job_started(const PlannedJob& planned) = 0;
+  virtual void job_ended(const PlannedJob& planned, const JobOutcome& outcome) = 0;
+};
+
 /// By what the time that a job takes is judged: the size of its scan, 0 if that is not read.
 std::uintmax_t bytes_to_read(const PlannedJob& planned);
 
@@ -28,6 +36,6 @@ std::uintmax_t bytes_to_read(const PlannedJob& planned);
 /// fails never harms another. outcomes[i] belongs to plan[i].
 std::vector<JobOutcome> run_jobs(const std::vector<PlannedJob>& plan,
                                  const SurfaceParameters& parameters, engine::Workers& workers,
-                                 Progress& progress);
+                                 Progress& progress, JobListener* listener = nullptr);
 
 }  // namespace semigeo::jobs

@@ -1,9 +1,9 @@
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <functional>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,22 +14,16 @@
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/run_options.hpp"
 #include "jobs/cli/run_report.hpp"
+#include "jobs/estimates.hpp"
 #include "jobs/local_executor.hpp"
+#include "jobs/plan_graph.hpp"
+#include "jobs/process_usage.hpp"
+#include "jobs/run_journal.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-void measure_process(RunSummary& summary) {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  summary.cpu_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
-  summary.peak_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
-}
 
 /// The archive, made if need be, for this run alone. Throws LockedError if another run has it. If
 /// it cannot be written there is no lock but a reason: where nothing is to be made that is fine.
@@ -78,23 +72,50 @@ std::vector<PlannedJob> make_plan(const RunOptions& options, const std::vector<F
   return plan;
 }
 
-/// For the next run: it need not read what this one read or made.
-void remember_datasets(const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,
-                       DigestCache& cache) {
+/// What only serves the next runs must not fail this one.
+void or_say(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const io::Error& e) {
+    std::fprintf(stderr, "semigeo: %s\n", e.what());
+  }
+}
+
+/// The next run need not read what this one read or made, and knows better what jobs need.
+void learn(const RunOptions& options, const std::vector<PlannedJob>& plan,
+           const std::vector<JobOutcome>& outcomes, DigestCache& cache) {
   for (std::size_t i = 0; i < plan.size(); ++i)
     if (outcomes[i].state == JobState::kDone) cache.dataset_keys(plan[i].job.name);
-  try {
-    cache.write();
-  } catch (const io::Error& e) {
-    std::fprintf(stderr, "semigeo: %s\n", e.what());  // only the next run's planning suffers
-  }
+  or_say([&] { cache.write(); });
+  const fs::path& archive = options.config.archive;
+  if (std::ranges::count(outcomes, JobState::kDone, &JobOutcome::state) == 0) return;
+  or_say([&] { learn_estimates(archive).write(archive); });
 }
 
 int dry_run(const RunOptions& options, const std::vector<FoundScan>& scans) {
   DigestCache cache(options.config.archive);
   const std::vector<PlannedJob> plan = make_plan(options, scans, cache);
-  print_plan(plan, options.json);
+  if (!options.dag.empty()) {
+    const std::vector<GraphNode> graph = graph_of(plan);
+    std::fputs((options.dag == "dot" ? to_dot(graph) : to_json(graph)).c_str(), stdout);
+  } else {
+    print_plan(plan, options.json, options.explain);
+  }
   return std::ranges::all_of(plan, is_readable) ? kAllDone : kSomeFailed;
+}
+
+/// Runs what is not up to date, and keeps the journal if the archive can be written.
+std::vector<JobOutcome> run_plan(const RunOptions& options, const std::vector<PlannedJob>& plan,
+                                 RunJournal* journal, RunSummary& summary) {
+  std::uintmax_t bytes = 0;
+  for (const PlannedJob& p : plan) bytes += bytes_to_read(p);
+  engine::Workers workers(options.config.threads);
+  Progress progress(std::ssize(plan) - summary.up_to_date, bytes);
+  auto outcomes = run_jobs(plan, options.config.surface, workers, progress, journal);
+  summary.vertex_levels = progress.vertex_levels();
+  summary.done = std::ranges::count(outcomes, JobState::kDone, &JobOutcome::state);
+  summary.failed = std::ranges::count(outcomes, JobState::kFailed, &JobOutcome::state);
+  return outcomes;
 }
 
 int run(const RunOptions& options, const std::vector<FoundScan>& scans,
@@ -103,34 +124,39 @@ int run(const RunOptions& options, const std::vector<FoundScan>& scans,
   const Possession possession(options.config.archive);
   DigestCache cache(options.config.archive);
   const std::vector<PlannedJob> plan = make_plan(options, scans, cache);
+  RunSummary summary;
+  summary.up_to_date = std::ranges::count_if(plan, &PlannedJob::up_to_date);
+  std::optional<RunJournal> journal;
   if (possession.lock) {
     prepare_archive(options.config.archive, effective_config, plan);
-  } else if (!std::ranges::all_of(plan, &PlannedJob::up_to_date)) {
+    journal.emplace(options.config.archive,
+                    RunStarted{.version = SEMIGEO_VERSION,
+                               .threads = options.config.threads,
+                               .jobs = std::ssize(plan) - summary.up_to_date,
+                               .up_to_date = summary.up_to_date});
+  } else if (summary.up_to_date < std::ssize(plan)) {
     std::rethrow_exception(possession.unwritable);
   }
-  std::int64_t to_run = 0;
-  std::uintmax_t bytes = 0;
-  for (const PlannedJob& p : plan) {
-    to_run += p.up_to_date ? 0 : 1;
-    bytes += bytes_to_read(p);
+  if (options.explain && !options.json) {
+    print_plan(plan, false, true);
+    std::fflush(stdout);  // it is to be read while the jobs run
   }
-  engine::Workers workers(options.config.threads);
-  RunSummary summary;
-  std::vector<JobOutcome> outcomes;
-  {
-    Progress progress(to_run, bytes);
-    outcomes = run_jobs(plan, options.config.surface, workers, progress);
-    summary.vertex_levels = progress.vertex_levels();
-  }
-  if (possession.lock) remember_datasets(plan, outcomes, cache);
-  for (const JobOutcome& outcome : outcomes) {
-    summary.done += outcome.state == JobState::kDone;
-    summary.up_to_date += outcome.state == JobState::kUpToDate;
-    summary.failed += outcome.state == JobState::kFailed;
-  }
+  const auto outcomes = run_plan(options, plan, journal ? &*journal : nullptr, summary);
   summary.wall_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  measure_process(summary);
+  const ProcessUsage usage = process_usage();
+  summary.cpu_seconds = usage.cpu_seconds;
+  summary.peak_bytes = usage.peak_bytes;
+  if (journal) {
+    journal->run_ended({.done = summary.done,
+                        .up_to_date = summary.up_to_date,
+                        .failed = summary.failed,
+                        .seconds = summary.wall_seconds,
+                        .cpu_seconds = summary.cpu_seconds});
+    if (!journal->problem().empty())
+      std::fprintf(stderr, "semigeo: %s\n", journal->problem().c_str());
+    learn(options, plan, outcomes, cache);
+  }
   if (options.json) {
     print_json(plan, outcomes, options.config.surface, summary);
   } else {
@@ -152,7 +178,8 @@ int find_and_run(const RunOptions& options, const std::string& effective_config)
     return kUsage;
   }
   try {
-    return options.dry_run ? dry_run(options, scans) : run(options, scans, effective_config);
+    const bool dry = options.dry_run || !options.dag.empty();
+    return dry ? dry_run(options, scans) : run(options, scans, effective_config);
   } catch (const LockedError& e) {
     std::fprintf(stderr, "semigeo: %s\n", e.what());
     return kLocked;
@@ -170,6 +197,7 @@ void add_run(CLI::App& app, int& exit_code) {
       "  semigeo run scans/ --output archive             every scan below scans/, 8 smoothings\n"
       "  semigeo run a.ply b.stl.gz --output archive --levels 20 --unit mm\n"
       "  semigeo run scans/ --output archive --dry-run   what would run, and why\n"
+      "  semigeo run scans/ --output archive --dry-run --explain   what differs\n"
       "  semigeo run scans/ --output archive --verify    also what the disk has damaged since\n"
       "\n"
       "What is up to date, by content, is left alone; a run that was interrupted goes on where it\n"

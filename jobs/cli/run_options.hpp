@@ -20,6 +20,8 @@ struct RunOptions {
   std::string compression = "deflate";
   bool json = false;
   bool dry_run = false;
+  bool explain = false;
+  std::string dag;  ///< empty, "dot" or "json"
   bool verify = false;
 };
 

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "jobs/journal.hpp"
+#include "jobs/local_executor.hpp"
+
+namespace semigeo::jobs {
+
+/// Writes one run into the journal of its archive. The run goes on without if that cannot be done.
+class RunJournal : public JobListener {
+ public:
+  /// Begins the run; the host, process and threads of `run` are filled in.
+  RunJournal(const std::filesystem::path& archive, RunStarted run);
+
+  void job_started(const PlannedJob& planned) override;
+  /// What the job cost is measured between the two calls: jobs must come one after the other.
+  void job_ended(const PlannedJob& planned, const JobOutcome& outcome) override;
+  void run_ended(const RunEnded& run);
+
+  /// Why there is no whole journal of this run; empty if there is.
+  const std::string& problem() const { return problem_; }
+
+ private:
+  void write(const JournalEvent& event);
+
+  std::optional<Journal> journal_;
+  std::string problem_;
+  std::int64_t threads_ = 0;
+  double cpu_seconds_ = 0;  ///< of this process when the job began
+  double peak_bytes_ = 0;
+};
+
+}  // namespace semigeo::jobs
