@@ -129,6 +129,7 @@ int run(const RunOptions& options, const std::vector<FoundScan>& scans,
   std::optional<RunJournal> journal;
   if (possession.lock) {
     prepare_archive(options.config.archive, effective_config, plan);
+    or_say([&] { cache.write(); });  // so that a run that is killed has not hashed for nothing
     journal.emplace(options.config.archive,
                     RunStarted{.version = SEMIGEO_VERSION,
                                .threads = options.config.threads,
