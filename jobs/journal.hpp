@@ -11,8 +11,8 @@
 namespace semigeo::jobs {
 
 struct RunStarted {
-  std::string version;  ///< of the program
-  std::string host;
+  std::string version = {};  ///< of the program
+  std::string host = {};
   std::int64_t pid = 0;
   std::int64_t threads = 0;
   std::int64_t jobs = 0;  ///< to be done
@@ -21,18 +21,18 @@ struct RunStarted {
 };
 
 struct JobStarted {
-  std::string job;  ///< "surface <name of the dataset>"
-  std::string key;  ///< under which its output will be up to date
+  std::string job = {};  ///< "surface <name of the dataset>"
+  std::string key = {};  ///< under which its output will be up to date
   friend bool operator==(const JobStarted&, const JobStarted&) = default;
 };
 
 /// What is not known is zero or empty.
 struct JobEnded {
-  std::string job;
-  std::string key;
-  std::string state;  ///< "done" or "failed"
-  std::string error;  ///< of a failed job: one sentence
-  std::string format;
+  std::string job = {};
+  std::string key = {};
+  std::string state = {};  ///< "done" or "failed"
+  std::string error = {};  ///< of a failed job: one sentence
+  std::string format = {};
   double seconds = 0;
   double cpu_seconds = 0;
   double peak_bytes = 0;  ///< of memory

@@ -18,6 +18,7 @@
 #include "io/error.hpp"
 #include "jobs/drain.hpp"
 #include "jobs/job_line.hpp"
+#include "jobs/scan_size.hpp"
 
 namespace semigeo::jobs {
 namespace {
@@ -33,18 +34,6 @@ constexpr std::uint64_t kMemoryFactor = 4;
 constexpr std::uint64_t kLeastAddressSpace = std::uint64_t{2} << 30;
 constexpr std::uint64_t kAddressSpacePerThread = std::uint64_t{192} << 20;  // stacks and arenas
 constexpr std::size_t kLastLines = 3;
-
-/// What a job will take.
-struct Estimate {
-  double seconds = 0;  ///< on one thread
-  std::uint64_t bytes = 0;
-};
-
-Estimate estimate_of(const PlannedJob& planned, const SurfaceParameters& parameters) {
-  const auto vertices = static_cast<double>(bytes_to_read(planned)) / 38;
-  return {6e-6 * vertices * (parameters.levels + 1),
-          static_cast<std::uint64_t>(40e6 + 600 * vertices)};
-}
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -92,12 +81,12 @@ void remove_empty_logs(const fs::path& folder) {
 class Executor {
  public:
   Executor(const std::vector<PlannedJob>& plan, const SurfaceParameters& parameters,
-           const ExecutorOptions& options, Journal* journal, Progress& progress)
+           const ExecutorOptions& options, Progress& progress, JobListener* listener)
       : plan_(plan),
         parameters_(parameters),
         options_(options),
-        journal_(journal),
         progress_(progress),
+        listener_(listener),
         total_(engine::usable_resources()),
         outcomes_(plan.size()),
         estimates_(plan.size()),
@@ -134,9 +123,12 @@ class Executor {
         outcomes_[i].state = JobState::kUpToDate;
       } else if (!plan_[i].error.empty()) {
         progress_.scan_started(plan_[i].job.name);
+        if (listener_ != nullptr) listener_->job_started(plan_[i]);
         fail(i, plan_[i].error);
       } else {
-        estimates_[i] = estimate_of(plan_[i], parameters_);
+        if (!plan_[i].sidecar_only)
+          estimates_[i] =
+              options_.estimates.of(scan_size(plan_[i].job.input), parameters_.levels + 1, 1);
         seconds_left_ += estimates_[i].seconds;
         pending_.push_back(i);
       }
@@ -149,6 +141,10 @@ class Executor {
   int threads_for(std::size_t job) const {
     const double share = seconds_left_ > 0 ? estimates_[job].seconds / seconds_left_ : 1;
     return std::clamp(static_cast<int>(std::lround(share * total_.cores)), 1, total_.cores);
+  }
+
+  std::uint64_t bytes_of(std::size_t job) const {
+    return static_cast<std::uint64_t>(estimates_[job].peak_bytes);
   }
 
   bool ends_in_time(std::size_t job) const {
@@ -164,7 +160,7 @@ class Executor {
           std::ranges::find_if(pending_, [this](std::size_t job) { return ends_in_time(job); });
       if (next == pending_.end()) return;
       const std::size_t job = *next;
-      const engine::Amount wanted = {threads_for(job), estimates_[job].bytes};
+      const engine::Amount wanted = {threads_for(job), bytes_of(job)};
       // What is refused waits at the head of the queue: small jobs behind it must not starve it.
       if (!resources_.admit(wanted)) return;
       pending_.erase(next);
@@ -189,9 +185,10 @@ class Executor {
     children_.restart_clocks(child, timeout * taken.cores, timeout);
     children_.send(child, to_line(request));
     running_[child] = {job, taken, timeout, Clock::now()};
+    outcomes_[job].threads = taken.cores;
     if (outcomes_[job].attempts++ == 0) {
       progress_.scan_started(planned.job.name);
-      tell(JobStarted{.job = "surface " + planned.job.name, .key = planned.job.key});
+      if (listener_ != nullptr) listener_->job_started(planned);
     }
   }
 
@@ -212,7 +209,7 @@ class Executor {
 
   std::uint64_t address_space(std::size_t job, int threads) const {
     if (options_.memory_per_job > 0) return options_.memory_per_job;
-    return std::max(kLeastAddressSpace, kMemoryFactor * estimates_[job].bytes) +
+    return std::max(kLeastAddressSpace, kMemoryFactor * bytes_of(job)) +
            static_cast<std::uint64_t>(threads) * kAddressSpacePerThread;
   }
 
@@ -245,15 +242,14 @@ class Executor {
     outcome.peak_bytes = reply.peak_bytes;
     outcome.result = std::move(reply.result);
     outcome.seconds = seconds_since(at->second.start);
-    const engine::Amount taken = at->second.taken;
     release(at);
     children_.restart_clocks(line.child, 0, 0);
     idle_.push_back(line.child);
     if (reply.kind == JobReply::Kind::kDone) {
       outcome.state = JobState::kDone;
-      end(job, taken.cores);
+      end(job);
     } else {
-      fail(job, reply.error, taken.cores);
+      fail(job, reply.error);
     }
   }
 
@@ -275,11 +271,9 @@ class Executor {
       return;
     }
     const std::string printed = last_lines(log_of(was.job));
-    fail(was.job,
-         planned.job.input.string() + ": its job " + cause +
-             (printed.empty() ? "" : "; it last said: " + printed) + "; see " +
-             log_of(was.job).string() + ", and run again or leave the scan out",
-         was.taken.cores);
+    fail(was.job, planned.job.input.string() + ": its job " + cause +
+                      (printed.empty() ? "" : "; it last said: " + printed) + "; see " +
+                      log_of(was.job).string() + ", and run again or leave the scan out");
   }
 
   void release(std::map<ChildProcesses::Id, Running>::iterator at) {
@@ -288,44 +282,18 @@ class Executor {
     running_.erase(at);
   }
 
-  void fail(std::size_t job, const std::string& error, int threads = 0) {
+  void fail(std::size_t job, const std::string& error) {
     outcomes_[job].state = JobState::kFailed;
     outcomes_[job].error = error;
     progress_.say("failed: " + error);
-    end(job, threads);
+    end(job);
     if (options_.fail_fast) stopping_ = true;
   }
 
-  void end(std::size_t job, int threads) {
-    const JobOutcome& outcome = outcomes_[job];
-    const PlannedJob& planned = plan_[job];
-    progress_.scan_ended(outcome.state == JobState::kDone, bytes_to_read(planned));
-    JobEnded ended{.job = "surface " + planned.job.name,
-                   .key = planned.job.key,
-                   .state = outcome.state == JobState::kDone ? "done" : "failed",
-                   .error = outcome.error,
-                   .format = {},
-                   .seconds = outcome.seconds,
-                   .cpu_seconds = outcome.cpu_seconds,
-                   .peak_bytes = outcome.peak_bytes,
-                   .input_bytes = static_cast<std::int64_t>(bytes_to_read(planned)),
-                   .threads = threads};
-    if (outcome.result) {
-      ended.format = outcome.result->format;
-      ended.vertices = outcome.result->vertices;
-      ended.levels = outcome.result->levels;
-    }
-    tell(ended);
-  }
-
-  void tell(const JournalEvent& event) {
-    if (journal_ == nullptr) return;
-    try {
-      journal_->write(event);
-    } catch (const io::Error& e) {
-      progress_.say(std::string("warning: ") + e.what());
-      journal_ = nullptr;  // said once; the jobs themselves go on
-    }
+  void end(std::size_t job) {
+    const bool done = outcomes_[job].state == JobState::kDone;
+    progress_.scan_ended(done, bytes_to_read(plan_[job]));
+    if (listener_ != nullptr) listener_->job_ended(plan_[job], outcomes_[job]);
   }
 
   /// A signal has come.
@@ -344,8 +312,8 @@ class Executor {
   const std::vector<PlannedJob>& plan_;
   const SurfaceParameters& parameters_;
   const ExecutorOptions& options_;
-  Journal* journal_;
   Progress& progress_;
+  JobListener* listener_;
   engine::Amount total_;
   engine::Resources resources_{{}};
   std::vector<JobOutcome> outcomes_;
@@ -372,8 +340,8 @@ std::uintmax_t bytes_to_read(const PlannedJob& planned) {
 
 std::vector<JobOutcome> run_jobs(const std::vector<PlannedJob>& plan,
                                  const SurfaceParameters& parameters,
-                                 const ExecutorOptions& options, Journal* journal,
-                                 Progress& progress) {
+                                 const ExecutorOptions& options, Progress& progress,
+                                 JobListener* listener) {
   std::set<fs::path> folders = {options.logs};
   for (const PlannedJob& planned : plan) folders.insert(planned.job.output.parent_path());
   for (const fs::path& folder : folders) {
@@ -384,7 +352,7 @@ std::vector<JobOutcome> run_jobs(const std::vector<PlannedJob>& plan,
                       "check the output folder, its permissions and the free space");
     io::remove_stale_partials(folder);
   }
-  return Executor(plan, parameters, options, journal, progress).run();
+  return Executor(plan, parameters, options, progress, listener).run();
 }
 
 }  // namespace semigeo::jobs

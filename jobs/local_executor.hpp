@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "jobs/journal.hpp"
+#include "jobs/estimates.hpp"
 #include "jobs/plan.hpp"
 #include "jobs/progress.hpp"
 #include "jobs/stages/surface_job.hpp"
@@ -28,6 +28,7 @@ struct JobOutcome {
   double seconds = 0;
   double cpu_seconds = 0;
   double peak_bytes = 0;
+  int threads = 0;
   int attempts = 0;
 };
 
@@ -41,7 +42,16 @@ struct ExecutorOptions {
   double timeout_seconds = 0;        ///< of one, by the clock; 0: many times the estimate
   int retries = 1;                   ///< of a job that a signal or a limit ended
   bool fail_fast = false;            ///< start nothing after the first failure
+  Estimates estimates = {};          ///< of what jobs need
   double most_seconds = 0;           ///< start nothing that is not expected to end in time; 0: any
+};
+
+/// Is told of each job that runs, in the thread that called run_jobs.
+class JobListener {
+ public:
+  virtual ~JobListener() = default;
+  virtual void job_started(const PlannedJob& planned) = 0;
+  virtual void job_ended(const PlannedJob& planned, const JobOutcome& outcome) = 0;
 };
 
 /// By what the time that a job takes is judged: the size of its scan, 0 if that is not read.
@@ -54,7 +64,7 @@ std::uintmax_t bytes_to_read(const PlannedJob& planned);
 /// jobs end and starts no more, the second ends them. outcomes[i] belongs to plan[i].
 std::vector<JobOutcome> run_jobs(const std::vector<PlannedJob>& plan,
                                  const SurfaceParameters& parameters,
-                                 const ExecutorOptions& options, Journal* journal,
-                                 Progress& progress);
+                                 const ExecutorOptions& options, Progress& progress,
+                                 JobListener* listener = nullptr);
 
 }  // namespace semigeo::jobs

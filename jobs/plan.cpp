@@ -77,6 +77,15 @@ bool sidecar_is_right(const fs::path& dataset) {
 
 }  // namespace
 
+std::string job_id(const SurfaceJob& job) {
+  return "surface " + job.name;
+}
+
+std::string_view state_of(const PlannedJob& planned) {
+  if (!planned.error.empty()) return "unreadable";
+  return planned.up_to_date ? "up to date" : "would run";
+}
+
 std::string job_key(const std::string& name, const std::string& input_xxh3,
                     const SurfaceParameters& parameters) {
   return key_of(name, input_xxh3, to_json(parameters));

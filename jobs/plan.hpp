@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "jobs/config.hpp"
@@ -29,6 +30,12 @@ struct PlannedJob {
   std::string error;            ///< why it cannot even be planned (the scan is unreadable)
   std::filesystem::path scan;   ///< absolute path of the scan, for Sources
 };
+
+/// "surface <name>": what the journal and the graph call the job.
+std::string job_id(const SurfaceJob& job);
+
+/// "up to date", "would run" or "unreadable".
+std::string_view state_of(const PlannedJob& planned);
 
 /// Key under which a job's output is up to date, by content and never by time.
 std::string job_key(const std::string& name, const std::string& input_xxh3,

@@ -1,10 +1,9 @@
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <functional>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,26 +14,16 @@
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/run_options.hpp"
 #include "jobs/cli/run_report.hpp"
-#include "jobs/journal.hpp"
+#include "jobs/estimates.hpp"
 #include "jobs/local_executor.hpp"
-#include "jobs/process_identity.hpp"
-#include "jobs/utc_time.hpp"
+#include "jobs/plan_graph.hpp"
+#include "jobs/process_usage.hpp"
+#include "jobs/run_journal.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// What this process has taken of the machine, the jobs' own processes apart.
-void add_own_costs(RunSummary& summary) {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  summary.cpu_seconds += seconds(usage.ru_utime) + seconds(usage.ru_stime);
-  summary.peak_bytes = std::max(summary.peak_bytes, 1024.0 * static_cast<double>(usage.ru_maxrss));
-}
 
 /// The archive, made if need be, for this run alone. Throws LockedError if another run has it. If
 /// it cannot be written there is no lock but a reason: where nothing is to be made that is fine.
@@ -83,93 +72,63 @@ std::vector<PlannedJob> make_plan(const RunOptions& options, const std::vector<F
   return plan;
 }
 
-/// For the next run: it need not read what this one read or made.
-void remember_datasets(const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,
-                       DigestCache& cache) {
+/// What only serves the next runs must not fail this one.
+void or_say(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const io::Error& e) {
+    std::fprintf(stderr, "semigeo: %s\n", e.what());
+  }
+}
+
+/// The next run need not read what this one read or made, and knows better what jobs need.
+void learn(const RunOptions& options, const std::vector<PlannedJob>& plan,
+           const std::vector<JobOutcome>& outcomes, DigestCache& cache) {
   for (std::size_t i = 0; i < plan.size(); ++i)
     if (outcomes[i].state == JobState::kDone) cache.dataset_keys(plan[i].job.name);
-  try {
-    cache.write();
-  } catch (const io::Error& e) {
-    std::fprintf(stderr, "semigeo: %s\n", e.what());  // only the next run's planning suffers
-  }
+  or_say([&] { cache.write(); });
+  const fs::path& archive = options.config.archive;
+  if (std::ranges::count(outcomes, JobState::kDone, &JobOutcome::state) == 0) return;
+  or_say([&] { learn_estimates(archive).write(archive); });
 }
 
 int dry_run(const RunOptions& options, const std::vector<FoundScan>& scans) {
   DigestCache cache(options.config.archive);
   const std::vector<PlannedJob> plan = make_plan(options, scans, cache);
-  print_plan(plan, options.json);
+  if (!options.dag.empty()) {
+    const std::vector<GraphNode> graph = graph_of(plan);
+    std::fputs((options.dag == "dot" ? to_dot(graph) : to_json(graph)).c_str(), stdout);
+  } else {
+    print_plan(plan, options.json, options.explain);
+  }
   return std::ranges::all_of(plan, is_readable) ? kAllDone : kSomeFailed;
 }
 
-/// A name for this run that no other run of the archive has.
-std::string run_name() {
-  return utc_time() + "-" + std::to_string(getpid());
-}
-
-/// Keeps the journal of a run, if the archive lets it: nothing but estimates depends on it.
-class RunJournal {
- public:
-  explicit RunJournal(const fs::path& archive) {
-    try {
-      journal_.emplace(archive, run_name());
-    } catch (const io::Error& e) {
-      warn(e);
-    }
-  }
-  Journal* get() { return journal_ ? &*journal_ : nullptr; }
-  void write(const JournalEvent& event) {
-    if (!journal_) return;
-    try {
-      journal_->write(event);
-    } catch (const io::Error& e) {
-      warn(e);
-      journal_.reset();
-    }
-  }
-
- private:
-  static void warn(const io::Error& e) { std::fprintf(stderr, "semigeo: %s\n", e.what()); }
-  std::optional<Journal> journal_;
-};
-
-/// Does what is not up to date.
-std::vector<JobOutcome> execute(const RunOptions& options, const std::vector<PlannedJob>& plan,
-                                RunSummary& summary) {
-  const auto to_run = std::ranges::count(plan, false, &PlannedJob::up_to_date);
-  if (to_run == 0) {
-    JobOutcome up_to_date;
-    up_to_date.state = JobState::kUpToDate;
-    return std::vector<JobOutcome>(plan.size(), up_to_date);
+/// Runs what is not up to date, and tells `journal`, if there is one.
+std::vector<JobOutcome> run_plan(const RunOptions& options, const std::vector<PlannedJob>& plan,
+                                 RunJournal* journal, RunSummary& summary) {
+  std::vector<JobOutcome> outcomes(plan.size());
+  if (summary.up_to_date == std::ssize(plan)) {
+    for (JobOutcome& outcome : outcomes) outcome.state = JobState::kUpToDate;
+    return outcomes;
   }
   std::uintmax_t bytes = 0;
   for (const PlannedJob& p : plan) bytes += bytes_to_read(p);
-  const fs::path& archive = options.config.archive;
   ExecutorOptions executor = options.executor;
   executor.program = fs::read_symlink("/proc/self/exe");
-  executor.logs = archive / "logs";
+  executor.logs = options.config.archive / "logs";
   executor.threads = options.config.threads;
-  RunJournal journal(archive);
-  const auto start = std::chrono::steady_clock::now();
-  journal.write(RunStarted{.version = SEMIGEO_VERSION,
-                           .host = this_process().host,
-                           .pid = getpid(),
-                           .threads = options.config.threads,
-                           .jobs = to_run,
-                           .up_to_date = std::ssize(plan) - to_run});
-  Progress progress(to_run, bytes);
-  std::vector<JobOutcome> outcomes =
-      run_jobs(plan, options.config.surface, executor, journal.get(), progress);
+  executor.estimates = Estimates::read(options.config.archive);
+  Progress progress(std::ssize(plan) - summary.up_to_date, bytes);
+  outcomes = run_jobs(plan, options.config.surface, executor, progress, journal);
   summary.vertex_levels = progress.vertex_levels();
-  RunEnded ended;
+  summary.done = std::ranges::count(outcomes, JobState::kDone, &JobOutcome::state);
+  summary.failed = std::ranges::count(outcomes, JobState::kFailed, &JobOutcome::state);
+  summary.not_run = std::ranges::count(outcomes, JobState::kNotRun, &JobOutcome::state);
   for (const JobOutcome& outcome : outcomes) {
-    ended.done += outcome.state == JobState::kDone;
-    ended.up_to_date += outcome.state == JobState::kUpToDate;
-    ended.failed += outcome.state == JobState::kFailed;
-    ended.cpu_seconds += outcome.cpu_seconds;
+    summary.cpu_seconds += outcome.cpu_seconds;
+    summary.peak_bytes = std::max(summary.peak_bytes, outcome.peak_bytes);
   }
-  ended.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  journal.write(ended);
   return outcomes;
 }
 
@@ -179,29 +138,42 @@ int run(const RunOptions& options, const std::vector<FoundScan>& scans,
   const Possession possession(options.config.archive);
   DigestCache cache(options.config.archive);
   const std::vector<PlannedJob> plan = make_plan(options, scans, cache);
+  RunSummary summary;
+  summary.up_to_date = std::ranges::count_if(plan, &PlannedJob::up_to_date);
+  std::optional<RunJournal> journal;
   if (possession.lock) {
     prepare_archive(options.config.archive, effective_config, plan);
-  } else if (!std::ranges::all_of(plan, &PlannedJob::up_to_date)) {
+    or_say([&] { cache.write(); });  // so that a run that is killed has not hashed for nothing
+    journal.emplace(options.config.archive,
+                    RunStarted{.version = SEMIGEO_VERSION,
+                               .threads = options.config.threads,
+                               .jobs = std::ssize(plan) - summary.up_to_date,
+                               .up_to_date = summary.up_to_date});
+  } else if (summary.up_to_date < std::ssize(plan)) {
     std::rethrow_exception(possession.unwritable);
   }
-  RunSummary summary;
-  const std::vector<JobOutcome> outcomes = execute(options, plan, summary);
-  if (possession.lock) {
-    // Workers of a run that was killed may have lived a moment into this one.
-    io::remove_stale_partials(options.config.archive / "scans");
-    remember_datasets(plan, outcomes, cache);
+  if (options.explain && !options.json) {
+    print_plan(plan, false, true);
+    std::fflush(stdout);  // it is to be read while the jobs run
   }
-  for (const JobOutcome& outcome : outcomes) {
-    summary.done += outcome.state == JobState::kDone;
-    summary.up_to_date += outcome.state == JobState::kUpToDate;
-    summary.failed += outcome.state == JobState::kFailed;
-    summary.not_run += outcome.state == JobState::kNotRun;
-    summary.cpu_seconds += outcome.cpu_seconds;
-    summary.peak_bytes = std::max(summary.peak_bytes, outcome.peak_bytes);
-  }
+  const auto outcomes = run_plan(options, plan, journal ? &*journal : nullptr, summary);
   summary.wall_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  add_own_costs(summary);
+  // Workers of a run that was killed may have lived a moment into this one.
+  if (possession.lock) io::remove_stale_partials(options.config.archive / "scans");
+  const ProcessUsage usage = process_usage();
+  summary.cpu_seconds += usage.cpu_seconds;
+  summary.peak_bytes = std::max(summary.peak_bytes, usage.peak_bytes);
+  if (journal) {
+    journal->run_ended({.done = summary.done,
+                        .up_to_date = summary.up_to_date,
+                        .failed = summary.failed,
+                        .seconds = summary.wall_seconds,
+                        .cpu_seconds = summary.cpu_seconds});
+    if (!journal->problem().empty())
+      std::fprintf(stderr, "semigeo: %s\n", journal->problem().c_str());
+    learn(options, plan, outcomes, cache);
+  }
   if (options.json) {
     print_json(plan, outcomes, options.config.surface, summary);
   } else {
@@ -224,7 +196,8 @@ int find_and_run(const RunOptions& options, const std::string& effective_config)
     return kUsage;
   }
   try {
-    return options.dry_run ? dry_run(options, scans) : run(options, scans, effective_config);
+    const bool dry = options.dry_run || !options.dag.empty();
+    return dry ? dry_run(options, scans) : run(options, scans, effective_config);
   } catch (const LockedError& e) {
     std::fprintf(stderr, "semigeo: %s\n", e.what());
     return kLocked;
@@ -242,6 +215,7 @@ void add_run(CLI::App& app, int& exit_code) {
       "  semigeo run scans/ --output archive             every scan below scans/, 8 smoothings\n"
       "  semigeo run a.ply b.stl.gz --output archive --levels 20 --unit mm\n"
       "  semigeo run scans/ --output archive --dry-run   what would run, and why\n"
+      "  semigeo run scans/ --output archive --dry-run --explain   what differs\n"
       "  semigeo run scans/ --output archive --verify    also what the disk has damaged since\n"
       "\n"
       "What is up to date, by content, is left alone; a run that was interrupted goes on where it\n"

@@ -215,6 +215,16 @@ void add_run_options(CLI::App* command, RunOptions& options) {
       ->configurable(false);
   command->add_flag("--dry-run", options.dry_run, "Say what would run, and why; write nothing")
       ->configurable(false);
+  command
+      ->add_flag("--explain", options.explain,
+                 "Name everything because of which a scan is done: parameters, old and new, ...")
+      ->configurable(false);
+  command
+      ->add_option("--dag", options.dag,
+                   "Print the graph of files and jobs, for Graphviz or as JSON; run nothing")
+      ->default_str("")
+      ->check(CLI::IsMember({"dot", "json"}))
+      ->configurable(false);
 }
 
 void apply_words(RunOptions& options) {

@@ -24,6 +24,8 @@ struct RunOptions {
   bool keep_going = false;  ///< said aloud
   std::string until;        ///< "06:00", local time; empty: no end
   bool dry_run = false;
+  bool explain = false;
+  std::string dag;  ///< empty, "dot" or "json"
   bool verify = false;
 };
 

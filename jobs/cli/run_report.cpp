@@ -11,10 +11,27 @@
 namespace semigeo::jobs::cli {
 namespace {
 
+/// Values of parameters are themselves; what there is not is null.
+nlohmann::json reason_json(const Reason& reason) {
+  const bool parameter = reason.kind == Reason::Kind::kParameter;
+  const auto value = [&](const std::string& text) -> nlohmann::json {
+    if (text.empty()) return nullptr;
+    if (parameter) return nlohmann::json::parse(text, nullptr, false);
+    return text;
+  };
+  nlohmann::json document = {{"kind", name_of(reason.kind)}};
+  if (parameter) document["name"] = reason.parameter;
+  if (parameter || !reason.before.empty()) document["before"] = value(reason.before);
+  if (parameter || !reason.now.empty()) document["now"] = value(reason.now);
+  return document;
+}
+
 nlohmann::json scan_json(const PlannedJob& planned) {
-  return {{"name", planned.job.name},
-          {"input", planned.job.input.string()},
-          {"output", planned.job.output.string()}};
+  nlohmann::json scan = {{"name", planned.job.name},
+                         {"input", planned.job.input.string()},
+                         {"output", planned.job.output.string()}};
+  for (const Reason& reason : planned.reasons) scan["reasons"].push_back(reason_json(reason));
+  return scan;
 }
 
 const char* state_name(JobState state) {
@@ -71,12 +88,12 @@ std::string in_words(const SurfaceJobResult& result) {
 
 }  // namespace
 
-void print_plan(const std::vector<PlannedJob>& plan, bool json) {
+void print_plan(const std::vector<PlannedJob>& plan, bool json, bool explain) {
   if (json) {
     auto scans = nlohmann::json::array();
     for (const PlannedJob& p : plan) {
       auto scan = scan_json(p);
-      scan["state"] = p.up_to_date ? "up to date" : p.error.empty() ? "would run" : "unreadable";
+      scan["state"] = state_of(p);
       if (!p.reasons.empty()) scan["reason"] = in_short(p.reasons);
       if (!p.error.empty()) scan["error"] = p.error;
       scans.push_back(std::move(scan));
@@ -88,6 +105,8 @@ void print_plan(const std::vector<PlannedJob>& plan, bool json) {
     if (p.up_to_date) continue;
     std::printf("%s: %s\n", p.job.name.c_str(),
                 p.error.empty() ? ("would run: " + in_short(p.reasons)).c_str() : p.error.c_str());
+    if (!explain) continue;
+    for (const Reason& reason : p.reasons) std::printf("    %s\n", in_words(reason).c_str());
   }
   const auto up_to_date = std::ranges::count_if(plan, &PlannedJob::up_to_date);
   const auto unreadable = std::ranges::count_if(plan, std::not_fn(is_readable));

@@ -28,8 +28,9 @@ inline bool is_readable(const PlannedJob& planned) {
   return planned.error.empty();
 }
 
-/// What would run, and why; on stdout, as JSON or as text.
-void print_plan(const std::vector<PlannedJob>& plan, bool json);
+/// What would run, and why; on stdout, as JSON or as text. In text `explain` names everything that
+/// differs, a line each; JSON always does.
+void print_plan(const std::vector<PlannedJob>& plan, bool json, bool explain);
 
 /// What a run has done, as one JSON document. outcomes[i] belongs to plan[i].
 void print_json(const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,

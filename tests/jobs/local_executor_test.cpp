@@ -32,7 +32,7 @@ class LocalExecutorTest : public testing::Test {
     Progress progress(0, 0);
     options_.logs = config_.archive / "logs";
     testing::internal::CaptureStderr();
-    auto outcomes = run_jobs(plan_jobs(config_), config_.surface, options_, nullptr, progress);
+    auto outcomes = run_jobs(plan_jobs(config_), config_.surface, options_, progress);
     said_ = testing::internal::GetCapturedStderr();
     vertex_levels_ = progress.vertex_levels();
     return outcomes;
@@ -149,7 +149,7 @@ TEST_F(LocalExecutorTest, AnOutputThatCannotBeAFolderIsNamed) {
   options_.logs = folder_ / "logs";
   Progress progress(0, 0);
   try {
-    run_jobs(plan_jobs(config_), config_.surface, options_, nullptr, progress);
+    run_jobs(plan_jobs(config_), config_.surface, options_, progress);
     ADD_FAILURE() << "it ran";
   } catch (const io::Error& error) {
     EXPECT_EQ(error.file(), folder_ / "file/scans");

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "jobs/plan.hpp"
+
+namespace semigeo::jobs {
+
+/// A file, or a job that makes one of others.
+struct GraphNode {
+  std::string id;     ///< of a job its name in the journal; of a file its kind and path
+  std::string kind;   ///< "scan", "surface" (a job) or "dataset"
+  std::string name;   ///< path of a file, name of a job's dataset
+  std::string state;  ///< "up to date", "would run", "unreadable", ...
+  std::vector<std::string> dependencies = {};  ///< identifiers
+  friend bool operator==(const GraphNode&, const GraphNode&) = default;
+};
+
+/// Scan, surface job and dataset of everything planned, in the order of the plan; dependencies come
+/// before what depends on them.
+std::vector<GraphNode> graph_of(const std::vector<PlannedJob>& plan);
+
+/// {"nodes": [{"id", "kind", "name", "state", "dependencies"}]}.
+std::string to_json(const std::vector<GraphNode>& graph);
+
+/// For Graphviz: files are notes, jobs boxes, what is up to date is dashed.
+std::string to_dot(const std::vector<GraphNode>& graph);
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,91 @@
+#include "jobs/plan_graph.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+namespace semigeo::jobs {
+namespace {
+
+/// Jobs in every state.
+std::vector<PlannedJob> plan() {
+  std::vector<PlannedJob> jobs;
+  const auto add = [&](const std::string& name) -> PlannedJob& {
+    PlannedJob planned;
+    planned.scan = "/in/" + name;
+    planned.job.name = name;
+    planned.job.output = "archive/scans/" + name + ".vtkhdf";
+    jobs.push_back(planned);
+    return jobs.back();
+  };
+  add("a.ply").up_to_date = true;
+  add("b.ply").reasons = {{.kind = Reason::Kind::kNoDataset}};
+  add("c.ply").reasons = {{.kind = Reason::Kind::kScan}};
+  PlannedJob& sidecar = add("d.ply");
+  sidecar.reasons = {{.kind = Reason::Kind::kNoSidecar}};
+  sidecar.sidecar_only = true;
+  add("e.ply").error = "cannot be read";
+  return jobs;
+}
+
+TEST(PlanGraphTest, LeadsFromScansThroughJobsToDatasets) {
+  const auto graph = graph_of(plan());
+  ASSERT_EQ(graph.size(), 15u);
+  EXPECT_EQ(graph[3],
+            (GraphNode{
+                .id = "scan /in/b.ply", .kind = "scan", .name = "/in/b.ply", .state = "readable"}));
+  EXPECT_EQ(graph[4], (GraphNode{.id = "surface b.ply",
+                                 .kind = "surface",
+                                 .name = "b.ply",
+                                 .state = "would run",
+                                 .dependencies = {"scan /in/b.ply"}}));
+  EXPECT_EQ(graph[5], (GraphNode{.id = "dataset archive/scans/b.ply.vtkhdf",
+                                 .kind = "dataset",
+                                 .name = "archive/scans/b.ply.vtkhdf",
+                                 .state = "missing",
+                                 .dependencies = {"surface b.ply"}}));
+  std::vector<std::string> states;
+  for (const GraphNode& node : graph) states.push_back(node.state);
+  EXPECT_EQ(states, (std::vector<std::string>{"readable", "up to date", "up to date", "readable",
+                                              "would run", "missing", "readable", "would run",
+                                              "out of date", "readable", "would run", "up to date",
+                                              "unreadable", "unreadable", "unknown"}));
+  std::set<std::string> known;
+  for (const GraphNode& node : graph) {
+    for (const std::string& dependency : node.dependencies)
+      EXPECT_TRUE(known.contains(dependency)) << dependency;
+    EXPECT_TRUE(known.insert(node.id).second) << node.id;
+  }
+}
+
+TEST(PlanGraphTest, JsonHoldsEveryNode) {
+  const auto graph = graph_of(plan());
+  const auto document = nlohmann::json::parse(to_json(graph));
+  ASSERT_EQ(document["nodes"].size(), graph.size());
+  EXPECT_EQ(document["nodes"][4]["id"], "surface b.ply");
+  EXPECT_EQ(document["nodes"][4]["dependencies"][0], "scan /in/b.ply");
+  EXPECT_EQ(nlohmann::json::parse(to_json(std::vector<GraphNode>{}))["nodes"].size(), 0u);
+}
+
+TEST(PlanGraphTest, DotQuotesWhatNamesMayHold) {
+  auto jobs = plan();
+  jobs.resize(1);
+  jobs[0].scan = "/in/a \"b\"\\\n\xff.ply";
+  const std::string dot = to_dot(graph_of(jobs));
+  EXPECT_EQ(dot,
+            "digraph semigeo {\n"
+            "  rankdir=LR;\n"
+            "  \"scan /in/a \\\"b\\\"\\\\\\n\uFFFD.ply\" [shape=note, style=solid, "
+            "label=\"/in/a \\\"b\\\"\\\\\\n\uFFFD.ply\\nreadable\"];\n"
+            "  \"surface a.ply\" [shape=box, style=dashed, "
+            "label=\"surface a.ply\\nup to date\"];\n"
+            "  \"dataset archive/scans/a.ply.vtkhdf\" [shape=note, style=dashed, "
+            "label=\"archive/scans/a.ply.vtkhdf\\nup to date\"];\n"
+            "  \"scan /in/a \\\"b\\\"\\\\\\n\uFFFD.ply\" -> \"surface a.ply\";\n"
+            "  \"surface a.ply\" -> \"dataset archive/scans/a.ply.vtkhdf\";\n"
+            "}\n");
+}
+
+}  // namespace
+}  // namespace semigeo::jobs
