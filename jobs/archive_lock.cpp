@@ -20,10 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Owner {
-  ProcessIdentity process;
-  std::string since;
-};
+constexpr const char* kFileName = "lock";
+
+using Owner = LockOwner;
 
 std::string text_of(const Owner& owner) {
   const ProcessIdentity& process = owner.process;
@@ -127,7 +126,7 @@ bool take_over(const fs::path& ours, const fs::path& file) {
 }  // namespace
 
 ArchiveLock::ArchiveLock(const fs::path& archive)
-    : file_(archive / "lock"), owner_(this_process()) {
+    : file_(archive / kFileName), owner_(this_process()) {
   const io::AtomicFile ours(file_);  // for its name, and to be removed whatever comes
   {
     const io::FileDescriptor text(ours.temporary_path(), O_WRONLY | O_CREAT | O_EXCL);
@@ -147,6 +146,13 @@ ArchiveLock::~ArchiveLock() {
   const io::FileDescriptor lock(file_, O_RDONLY);
   const auto owner = lock ? owner_in(content_of(lock)) : std::nullopt;
   if (owner && owner->process == owner_) unlink(file_.c_str());
+}
+
+std::optional<LockOwner> lock_owner(const fs::path& archive) {
+  const io::FileDescriptor lock(archive / kFileName, O_RDONLY);
+  if (!lock) return std::nullopt;
+  const auto owner = owner_in(content_of(lock));
+  return owner && life_of(owner->process) != Life::kDead ? owner : std::nullopt;
 }
 
 }  // namespace semigeo::jobs

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "io/error.hpp"
@@ -31,5 +32,13 @@ class ArchiveLock {
   std::filesystem::path file_;
   ProcessIdentity owner_;
 };
+
+struct LockOwner {
+  ProcessIdentity process;
+  std::string since;  ///< "2024-05-31T21:00:00Z"
+};
+
+/// Who has the archive; nobody if the lock is a dead process's, or cannot be read.
+std::optional<LockOwner> lock_owner(const std::filesystem::path& archive);
 
 }  // namespace semigeo::jobs

@@ -39,6 +39,7 @@ void for_each_field(RunStarted& event, const Visit& visit) {
   visit("threads", event.threads);
   visit("jobs", event.jobs);
   visit("up_to_date", event.up_to_date);
+  visit("input_bytes", event.input_bytes);
 }
 
 template <typename Visit>

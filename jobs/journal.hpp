@@ -17,6 +17,7 @@ struct RunStarted {
   std::int64_t threads = 0;
   std::int64_t jobs = 0;  ///< to be done
   std::int64_t up_to_date = 0;
+  std::int64_t input_bytes = 0;  ///< of the scans that are to be read
   friend bool operator==(const RunStarted&, const RunStarted&) = default;
 };
 

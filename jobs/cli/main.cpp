@@ -39,6 +39,7 @@ int run(int argc, char** argv) {
   app.footer(
       "Examples:\n"
       "  semigeo run scans/ --output archive     every scan below scans/ gets a dataset\n"
+      "  semigeo status archive                  how far is it?\n"
       "  semigeo info archive                    what is in it\n"
       "  semigeo check archive                   is every byte as it was written?\n"
       "  semigeo export archive/scans/x.ply.vtkhdf --level 4 --output smooth.ply\n");
@@ -49,6 +50,7 @@ int run(int argc, char** argv) {
   app.option_defaults()->always_capture_default();
   int exit_code = kAllDone;
   add_run(app, exit_code);
+  add_status(app, exit_code);
   add_info(app, exit_code);
   add_check(app, exit_code);
   add_export(app, exit_code);

@@ -104,6 +104,12 @@ int dry_run(const RunOptions& options, const std::vector<FoundScan>& scans) {
   return std::ranges::all_of(plan, is_readable) ? kAllDone : kSomeFailed;
 }
 
+std::uintmax_t total_bytes(const std::vector<PlannedJob>& plan) {
+  std::uintmax_t bytes = 0;
+  for (const PlannedJob& planned : plan) bytes += bytes_to_read(planned);
+  return bytes;
+}
+
 /// Runs what is not up to date, and tells `journal`, if there is one.
 std::vector<JobOutcome> run_plan(const RunOptions& options, const std::vector<PlannedJob>& plan,
                                  RunJournal* journal, RunSummary& summary) {
@@ -112,14 +118,12 @@ std::vector<JobOutcome> run_plan(const RunOptions& options, const std::vector<Pl
     for (JobOutcome& outcome : outcomes) outcome.state = JobState::kUpToDate;
     return outcomes;
   }
-  std::uintmax_t bytes = 0;
-  for (const PlannedJob& p : plan) bytes += bytes_to_read(p);
   ExecutorOptions executor = options.executor;
   executor.program = fs::read_symlink("/proc/self/exe");
   executor.logs = options.config.archive / "logs";
   executor.threads = options.config.threads;
   executor.estimates = Estimates::read(options.config.archive);
-  Progress progress(std::ssize(plan) - summary.up_to_date, bytes);
+  Progress progress(std::ssize(plan) - summary.up_to_date, total_bytes(plan));
   outcomes = run_jobs(plan, options.config.surface, executor, progress, journal);
   summary.vertex_levels = progress.vertex_levels();
   summary.done = std::ranges::count(outcomes, JobState::kDone, &JobOutcome::state);
@@ -148,7 +152,8 @@ int run(const RunOptions& options, const std::vector<FoundScan>& scans,
                     RunStarted{.version = SEMIGEO_VERSION,
                                .threads = options.config.threads,
                                .jobs = std::ssize(plan) - summary.up_to_date,
-                               .up_to_date = summary.up_to_date});
+                               .up_to_date = summary.up_to_date,
+                               .input_bytes = static_cast<std::int64_t>(total_bytes(plan))});
   } else if (summary.up_to_date < std::ssize(plan)) {
     std::rethrow_exception(possession.unwritable);
   }

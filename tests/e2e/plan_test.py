@@ -87,6 +87,21 @@ class DagTest(SemigeoTest):
         self.semigeo("run", self.scans, "--output", self.archive, "--dag", "png", code=2)
 
 
+class StatusTest(SemigeoTest):
+    def test_it_tells_how_the_last_run_ended(self):
+        write_ply(self.scans / "a.ply", icosphere(2))
+        (self.scans / "b.ply").write_text("no ply")
+        self.run_scans("--levels", 1, code=1)
+        status = json.loads(self.semigeo("status", self.archive, "--json").stdout)
+        self.assertEqual((status["state"], status["done"], status["left"], status["datasets"]),
+                         ("ended", 1, 0, 1))
+        self.assertIn("b.ply", status["failed"]["surface b.ply"])
+        text = self.semigeo("status", self.archive).stdout
+        self.assertIn("1 done, 0 up to date, 1 failed, 0 running, 0 left", text)
+        self.assertIn("failed: surface b.ply: ", text)
+        self.semigeo("status", self.folder / "nothing", code=1)
+
+
 class JournalTest(SemigeoTest):
     def events(self):
         lines = (self.archive / "journal.jsonl").read_text().splitlines()
