@@ -72,16 +72,15 @@ class Walk {
   }
 
   void visit_attributes(const std::string& path) {
-    for (const std::string& name : file_.attribute_names(path)) {
-      if (path == "/" && (name == "digest" || name == "complete")) continue;
-      digest_.add_attribute(path, name, file_.attribute_type(path, name),
-                            file_.read_attribute(path, name));
+    for (const Hdf5Attribute& attribute : file_.attributes(path)) {
+      if (path == "/" && (attribute.name == "digest" || attribute.name == "complete")) continue;
+      digest_.add_attribute(path, attribute.name, attribute.type, attribute.value);
     }
   }
 
   void visit_array(const std::string& path) {
-    visit_attributes(path);
     const Hdf5File::Array array = file_.open_array(path);
+    if (array.has_attributes()) visit_attributes(path);
     if (array.is_virtual()) {
       digest_.add_virtual(path, array.shape().type, array.shape().rows, array.shape().columns,
                           array.virtual_pieces());

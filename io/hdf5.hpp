@@ -35,6 +35,12 @@ struct Hdf5Link {
   std::uint64_t address;  ///< the same for every hard link to one object
 };
 
+struct Hdf5Attribute {
+  std::string name;
+  std::string type;  ///< as io::attribute_type has it
+  AttributeValue value;
+};
+
 /// Owns an HDF5 identifier (hid_t, whose header only hdf5_library.hpp includes).
 class Hdf5Handle {
  public:
@@ -93,7 +99,8 @@ class Hdf5File {
   /// Entries of a group, by name.
   std::vector<Hdf5Link> links(const std::string& group) const;
   std::uint64_t address(const std::string& path) const;
-  std::vector<std::string> attribute_names(const std::string& object) const;
+  /// All of an object's, by name. Looking at one of them again costs nothing.
+  std::vector<Hdf5Attribute> attributes(const std::string& object) const;
   AttributeValue read_attribute(const std::string& object, const std::string& name) const;
   /// The same where only this type will do; Error if it has another.
   template <typename Value>
@@ -123,12 +130,15 @@ class Hdf5File {
   std::int64_t checked(std::int64_t result, const std::string& place, const char* action) const;
   std::int64_t id() const;
   Hdf5Handle open_object(const std::string& path) const;
+  AttributeValue value_of(const Hdf5Handle& attribute, const std::string& place) const;
   Hdf5Handle open_attribute(const std::string& object, const std::string& name) const;
 
   Hdf5Handle handle_;
   std::filesystem::path shown_as_;
   bool writing_ = false;
-  mutable std::map<std::string, ArrayShape> shapes_;  ///< of the arrays opened so far
+  // What has been looked at; a file that is read does not change.
+  mutable std::map<std::string, ArrayShape> shapes_;
+  mutable std::map<std::pair<std::string, std::string>, AttributeValue> attributes_;
 };
 
 /// An open array of a file, which must outlive it.
@@ -139,6 +149,7 @@ class Hdf5File::Array {
   const std::string& path() const { return path_; }
   const Hdf5File& file() const { return *file_; }
   bool is_virtual() const { return is_virtual_; }
+  bool has_attributes() const;
   /// Bytes of all its chunks in the file.
   std::int64_t stored_bytes() const;
   /// The chunk as it lies in the file, without its hash.

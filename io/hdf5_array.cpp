@@ -215,6 +215,10 @@ void Hdf5File::Array::describe_chunks(std::int64_t creation) {
   shape_.compression = *compression;
 }
 
+bool Hdf5File::Array::has_attributes() const {
+  return H5Aget_num_attrs(handle_.get()) != 0;
+}
+
 std::int64_t Hdf5File::Array::stored_bytes() const {
   return static_cast<std::int64_t>(H5Dget_storage_size(handle_.get()));
 }

@@ -53,6 +53,23 @@ AttributeShape attribute_shape(hid_t attribute) {
   return shape;
 }
 
+/// As io::attribute_type has it, or "unsupported".
+std::string type_of(hid_t attribute) {
+  const AttributeShape shape = attribute_shape(attribute);
+  const auto count = static_cast<std::size_t>(shape.count);
+  switch (shape.kind) {
+    case AttributeShape::Kind::integer:
+      return shape.scalar ? "int64" : counted("int64", count);
+    case AttributeShape::Kind::real:
+      return shape.scalar ? "float64" : counted("float64", count);
+    case AttributeShape::Kind::text:
+      return counted(shape.ascii ? "ascii" : "utf8", count);
+    case AttributeShape::Kind::unsupported:
+      break;
+  }
+  return "unsupported";
+}
+
 herr_t collect_name(hid_t, const char* name, const H5A_info_t*, void* data) noexcept {
   try {
     static_cast<std::vector<std::string>*>(data)->emplace_back(name);
@@ -118,19 +135,14 @@ bool Hdf5File::has_attribute(const std::string& object, const std::string& name)
                  "look for the attribute") > 0;
 }
 
-std::vector<std::string> Hdf5File::attribute_names(const std::string& object) const {
-  const Hdf5Handle owner = open_object(object);
-  std::vector<std::string> names;
-  checked(H5Aiterate2(owner.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_name, &names),
-          object, "list the attributes");
-  std::ranges::sort(names);
-  return names;
+AttributeValue Hdf5File::read_attribute(const std::string& object, const std::string& name) const {
+  const auto known = attributes_.find({object, name});
+  if (known != attributes_.end()) return known->second;
+  return value_of(open_attribute(object, name), object + ", attribute " + name);
 }
 
-AttributeValue Hdf5File::read_attribute(const std::string& object, const std::string& name) const {
-  const Hdf5Handle attribute = open_attribute(object, name);
+AttributeValue Hdf5File::value_of(const Hdf5Handle& attribute, const std::string& place) const {
   const AttributeShape shape = attribute_shape(attribute.get());
-  const std::string place = object + ", attribute " + name;
   const auto read = [&](hid_t type, void* data) {
     checked(H5Aread(attribute.get(), type, data), place, "read the attribute");
   };
@@ -158,19 +170,25 @@ AttributeValue Hdf5File::read_attribute(const std::string& object, const std::st
 }
 
 std::string Hdf5File::attribute_type(const std::string& object, const std::string& name) const {
-  const AttributeShape shape = attribute_shape(open_attribute(object, name).get());
-  const auto count = static_cast<std::size_t>(shape.count);
-  switch (shape.kind) {
-    case AttributeShape::Kind::integer:
-      return shape.scalar ? "int64" : counted("int64", count);
-    case AttributeShape::Kind::real:
-      return shape.scalar ? "float64" : counted("float64", count);
-    case AttributeShape::Kind::text:
-      return counted(shape.ascii ? "ascii" : "utf8", count);
-    case AttributeShape::Kind::unsupported:
-      break;
+  return type_of(open_attribute(object, name).get());
+}
+
+std::vector<Hdf5Attribute> Hdf5File::attributes(const std::string& object) const {
+  std::vector<Hdf5Attribute> attributes;
+  const Hdf5Handle owner = open_object(object);
+  std::vector<std::string> names;
+  checked(H5Aiterate2(owner.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_name, &names),
+          object, "list the attributes");
+  std::ranges::sort(names);
+  for (const std::string& name : names) {
+    const std::string place = object + ", attribute " + name;
+    const Hdf5Handle attribute(
+        checked(H5Aopen(owner.get(), name.c_str(), H5P_DEFAULT), place, "open the attribute"),
+        H5Aclose);
+    attributes.push_back({name, type_of(attribute.get()), value_of(attribute, place)});
+    attributes_.try_emplace({object, name}, attributes.back().value);
   }
-  return "unsupported";
+  return attributes;
 }
 
 }  // namespace semigeo::io

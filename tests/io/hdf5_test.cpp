@@ -54,7 +54,7 @@ TEST(Hdf5, AttributesOfEveryTypeComeBack) {
   file.close();
 
   const Hdf5File read = Hdf5File::open(folder / "a.h5");
-  EXPECT_EQ(read.attribute_names("/").size(), attributes.size());
+  EXPECT_EQ(read.attributes("/").size(), attributes.size());
   for (const auto& [name, value] : attributes) {
     EXPECT_EQ(read.read_attribute("/", name), value) << name;
     EXPECT_EQ(read.attribute_type("/", name), attribute_type(value)) << name;

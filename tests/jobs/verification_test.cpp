@@ -27,8 +27,8 @@ std::string bytes_of(const fs::path& path) {
 /// All that HDF5 itself reads in a file.
 std::string everything_in(const io::Hdf5File& file, const std::string& group) {
   std::string text = group + "\n";
-  for (const std::string& name : file.attribute_names(group))
-    text += name + " " + file.attribute_type(group, name) + "\n";
+  for (const io::Hdf5Attribute& attribute : file.attributes(group))
+    text += attribute.name + " " + attribute.type + "\n";
   for (const io::Hdf5Link& link : file.links(group)) {
     const std::string path = (group == "/" ? "" : group) + "/" + link.name;
     if (link.kind == io::Hdf5Link::Kind::group) {
