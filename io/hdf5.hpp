@@ -115,7 +115,8 @@ class Hdf5File {
   class Array;
   Array open_array(const std::string& path) const;
   /// Of an array as it was when it was opened first: looking again costs nothing.
-  ArrayShape shape_of(const std::string& path) const;
+  ArrayShape shape_of(const std::string& path) const { return look_at(path).shape; }
+  bool is_virtual(const std::string& path) const { return look_at(path).is_virtual; }
 
   /// A whole array by way of HDF5's own filters and virtual mappings, as little-endian rows. For
   /// tests: slow, and believes the file about its size.
@@ -137,7 +138,12 @@ class Hdf5File {
   std::filesystem::path shown_as_;
   bool writing_ = false;
   // What has been looked at; a file that is read does not change.
-  mutable std::map<std::string, ArrayShape> shapes_;
+  struct KnownArray {
+    ArrayShape shape;
+    bool is_virtual;
+  };
+  const KnownArray& look_at(const std::string& path) const;
+  mutable std::map<std::string, KnownArray> arrays_;
   mutable std::map<std::pair<std::string, std::string>, AttributeValue> attributes_;
 };
 

@@ -158,13 +158,13 @@ Hdf5File::Array Hdf5File::open_array(const std::string& path) const {
   Array array(
       *this, path,
       {checked(H5Dopen2(file, path.c_str(), H5P_DEFAULT), path, "open the dataset"), H5Dclose});
-  shapes_.try_emplace(path, array.shape());
+  arrays_.try_emplace(path, KnownArray{array.shape(), array.is_virtual()});
   return array;
 }
 
-ArrayShape Hdf5File::shape_of(const std::string& path) const {
-  const auto known = shapes_.find(path);
-  return known == shapes_.end() ? open_array(path).shape() : known->second;
+const Hdf5File::KnownArray& Hdf5File::look_at(const std::string& path) const {
+  if (!arrays_.contains(path)) open_array(path);
+  return arrays_.at(path);
 }
 
 std::vector<std::byte> Hdf5File::read_through_library(const std::string& path) const {

@@ -137,9 +137,8 @@ class Check {
     std::int64_t shown = 0;
     for (const VirtualPiece& piece : array.virtual_pieces()) {
       require(file_.has(piece.source), path, "shows " + piece.source + ", which does not exist");
-      const Hdf5File::Array source = file_.open_array(piece.source);
-      const ArrayShape& from = source.shape();
-      require(!source.is_virtual() && from.type == type &&
+      const ArrayShape from = file_.shape_of(piece.source);
+      require(!file_.is_virtual(piece.source) && from.type == type &&
                   from.rows * from.columns == piece.rows * columns,
               path, "shows " + piece.source + ", which has another type or size");
       shown += piece.rows;
