@@ -1,7 +1,10 @@
 #include "io/hdf5.hpp"
 
 #include <algorithm>
+#include <new>
+#include <optional>
 #include <string_view>
+#include <utility>
 
 #include "io/error.hpp"
 #include "io/hdf5_library.hpp"
@@ -12,8 +15,15 @@ namespace {
 constexpr const char* kDamaged =
     "the file is damaged or not one of semigeo's: remove it and run again, or run with --verify";
 
-herr_t keep_first(unsigned, const H5E_error2_t* error, void* text) noexcept {
-  *static_cast<std::string*>(text) = error->desc == nullptr ? "" : error->desc;
+/// What HDF5 says of an error; nothing if there was no memory to keep it in.
+using Reason = std::optional<std::string>;
+
+herr_t keep_first(unsigned, const H5E_error2_t* error, void* reason) noexcept {
+  try {
+    *static_cast<Reason*>(reason) = error->desc == nullptr ? "" : error->desc;
+  } catch (const std::bad_alloc&) {
+    static_cast<Reason*>(reason)->reset();
+  }
   return 1;  // stop: the walk began at the innermost entry
 }
 
@@ -50,8 +60,10 @@ void prepare_library() {
 
 // HDF5's innermost reason; of its report on a system call only the system's own words.
 std::string innermost_reason() {
-  std::string text;
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &text);
+  Reason reason = "";
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &reason);
+  if (!reason) throw std::bad_alloc();  // a C library must not be thrown through
+  std::string text = std::move(*reason);
   constexpr std::string_view kMark = "error message = '";
   const std::size_t mark = text.find(kMark);
   if (mark != std::string::npos) {
@@ -66,7 +78,7 @@ void Hdf5File::fail(const std::string& place, const std::string& action) const {
   const bool full = reason.find("No space left") != std::string::npos;
   throw Error(shown_as_, place, "cannot " + action + ": " + reason,
               full       ? "free some space and run again"
-              : writing_ ? "check the disk and run again"
+              : writing_ ? "check the disk and the memory, and run again"
                          : kDamaged);
 }
 

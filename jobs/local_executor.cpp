@@ -271,9 +271,12 @@ class Executor {
       return;
     }
     const std::string printed = last_lines(log_of(was.job));
-    fail(was.job, planned.job.input.string() + ": its job " + cause +
-                      (printed.empty() ? "" : "; it last said: " + printed) + "; see " +
-                      log_of(was.job).string() + ", and run again or leave the scan out");
+    const std::string where =  // an empty log is not kept
+        printed.empty()
+            ? "; "
+            : "; it last said: " + printed + "; see " + log_of(was.job).string() + ", and ";
+    fail(was.job, planned.job.input.string() + ": its job " + cause + where +
+                      "run again or leave the scan out");
   }
 
   void release(std::map<ChildProcesses::Id, Running>::iterator at) {

@@ -220,8 +220,13 @@ JobReply do_job(const JobRequest& request, Reporter& reporter) {
                   std::to_string(request.memory_bytes >> 20) +
                   " MiB of memory that a job may have; give --memory-per-job more, or decimate "
                   "the scan";
-  } catch (const std::exception& e) {
+  } catch (const io::Error& e) {
     reply.error = e.what();
+  } catch (const std::exception& e) {  // a thread that finds no room for its stack, for one
+    limit_address_space(0);
+    reply.error = request.job.input.string() + ": " + e.what() +
+                  "; run again, or give --memory-per-job more if its " +
+                  std::to_string(request.memory_bytes >> 20) + " MiB of memory were too little";
   }
   limit_address_space(0);
   const double peak = peak_bytes();

@@ -1,0 +1,237 @@
+#include "jobs/job_line.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <stdexcept>
+#include <type_traits>
+
+#include "io/utf8.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+// Every field of what is sent, by position: one more or less in a struct, and this does not compile
+// until it is listed here, and not pass until it is sent.
+
+template <typename Visit, typename... Fields>
+void visit_each(const Visit& visit, Fields&... fields) {
+  (visit(fields), ...);
+}
+
+template <typename Result, typename Visit>
+void every_field_of_result(Result& result, const Visit& visit) {
+  auto& [format, vertices, triangles, parts, levels, repairs, preparation, remeshed, vanished] =
+      result;
+  visit_each(visit, format, vertices, triangles, parts, levels, vanished);
+  {
+    auto& [a, b, c, d, e, f, g] = repairs;
+    visit_each(visit, a, b, c, d, e, f, g);
+  }
+  {
+    auto& [holes, a, b, c, d, tolerance, distance] = preparation;
+    visit_each(visit, a, b, c, d, tolerance);
+    auto& [loops, filled, outer, too_long, unsplittable] = holes;
+    visit_each(visit, loops, filled, outer, too_long, unsplittable);
+    auto& [maximum, sum, count] = distance;
+    visit_each(visit, maximum, sum, count);
+  }
+  {
+    auto& [a, b, c, d, e, f, g, h] = remeshed;
+    visit_each(visit, a, b, c, d, e, f, g, h);
+  }
+}
+
+template <typename Request, typename Visit>
+void every_field_of_request(Request& request, const Visit& visit) {
+  auto& [job, parameters, sidecar_only, threads, memory_bytes, log] = request;
+  visit_each(visit, sidecar_only, threads, memory_bytes, log);
+  {
+    auto& [input, input_name, name, output, input_xxh3, key] = job;
+    visit_each(visit, input, input_name, name, output, input_xxh3, key);
+  }
+}
+
+/// A value that no other field has.
+class Distinct {
+ public:
+  template <typename Field>
+  void operator()(Field& field) const {
+    ++count_;
+    if constexpr (std::is_same_v<Field, bool>) {
+      field = true;
+    } else if constexpr (std::is_integral_v<Field>) {
+      field = static_cast<Field>(1000 + count_);
+      if constexpr (sizeof(Field) == 8) field <<= 40;  // more than a double or an int holds
+      field += static_cast<Field>(count_);
+    } else if constexpr (std::is_floating_point_v<Field>) {
+      field = 1.0 / (2.0 + count_);
+    } else {
+      field = "text " + std::to_string(count_);
+    }
+  }
+
+ private:
+  mutable int count_ = 0;
+};
+
+/// All values, to be compared and to be printed.
+class Listed {
+ public:
+  template <typename Field>
+  void operator()(const Field& field) const {
+    std::ostringstream text;
+    text.precision(17);
+    text << field;
+    values.push_back(text.str());
+  }
+  mutable std::vector<std::string> values;
+};
+
+std::vector<std::string> values_of(const SurfaceJobResult& result) {
+  Listed listed;
+  every_field_of_result(result, listed);
+  return listed.values;
+}
+
+std::vector<std::string> values_of(const JobRequest& request) {
+  Listed listed;
+  every_field_of_request(request, listed);
+  listed.values.push_back(to_json(request.parameters));
+  return listed.values;
+}
+
+TEST(JobLineTest, EveryFieldOfARequestArrives) {
+  JobRequest request;
+  every_field_of_request(request, Distinct());
+  request.parameters = {.levels = 3,
+                        .preparation = {.fill_holes = 40,
+                                        .decimate = 0.25,
+                                        .decimate_in_length_units = true,
+                                        .target_vertices = 1993},
+                        .evolution = {.curved = false,
+                                      .coordinates = kernels::Coordinates::polar,
+                                      .schedule = Schedule::octaves,
+                                      .rescale = Rescale::edges,
+                                      .remesh = false,
+                                      .principal = true,
+                                      .step_factor = 0.1},
+                        .features = {.radius = 0, .min_completeness = 0.75},
+                        .recognition_level = 2,
+                        .compression = io::Compression::none,
+                        .length_unit = "m\"m"};
+  for (const JobRequest& sent : {request, JobRequest{}}) {
+    const std::string line = to_line(sent);
+    EXPECT_EQ(line.find('\n'), std::string::npos);
+    EXPECT_EQ(values_of(job_request_from(line)), values_of(sent));
+  }
+}
+
+TEST(JobLineTest, PathsAreBytes) {
+  JobRequest request;
+  request.job.input = "/scans/Krug N\u00ba \xff\xfe/100%41\n.ply";
+  request.job.output = "/archive \xc2/scans/a%.vtkhdf";
+  request.log = "/archive \xc2/logs/\"\\\x01.log";
+  const std::string line = to_line(request);
+  EXPECT_TRUE(io::is_utf8(line));
+  EXPECT_EQ(line.find('\n'), std::string::npos);
+  const JobRequest read = job_request_from(line);
+  EXPECT_EQ(read.job.input.native(), request.job.input.native());
+  EXPECT_EQ(read.job.output.native(), request.job.output.native());
+  EXPECT_EQ(read.log.native(), request.log.native());
+}
+
+TEST(JobLineTest, EveryFieldOfAResultArrives) {
+  SurfaceJobResult filled;
+  every_field_of_result(filled, Distinct());
+  for (const SurfaceJobResult& result : {filled, SurfaceJobResult{}}) {
+    const JobReply sent = {.kind = JobReply::Kind::kDone,
+                           .worked = 123,
+                           .error = {},
+                           .result = result,
+                           .cpu_seconds = 1.0 / 3,
+                           .peak_bytes = 1e12 + 1};
+    const std::string line = to_line(sent);
+    EXPECT_EQ(line.find('\n'), std::string::npos);
+    const auto [kind, worked, error, read, cpu_seconds, peak_bytes] = job_reply_from(line);
+    EXPECT_EQ(kind, JobReply::Kind::kDone);
+    EXPECT_EQ(worked, 123);
+    EXPECT_EQ(error, "");
+    EXPECT_EQ(cpu_seconds, 1.0 / 3);
+    EXPECT_EQ(peak_bytes, 1e12 + 1);
+    ASSERT_TRUE(read.has_value());
+    EXPECT_EQ(values_of(*read), values_of(result));
+  }
+}
+
+TEST(JobLineTest, AJobMayBeDoneWithoutADataset) {
+  const JobReply read =
+      job_reply_from(to_line({.kind = JobReply::Kind::kDone, .error = {}, .result = {}}));
+  EXPECT_EQ(read.kind, JobReply::Kind::kDone);
+  EXPECT_FALSE(read.result.has_value());
+}
+
+TEST(JobLineTest, WorkIsNoOutcome) {
+  const JobReply read = job_reply_from(to_line({.kind = JobReply::Kind::kWorked,
+                                                .worked = std::int64_t{1} << 60,
+                                                .error = {},
+                                                .result = {}}));
+  EXPECT_EQ(read.kind, JobReply::Kind::kWorked);
+  EXPECT_EQ(read.worked, std::int64_t{1} << 60);
+}
+
+TEST(JobLineTest, AFailureSaysWhyWhateverTheReason) {
+  const std::string name = "/Krug N\u00ba/a.ply: is \"no\" scan;\ntry \\ another";
+  const JobReply read = job_reply_from(to_line({.kind = JobReply::Kind::kFailed,
+                                                .worked = 7,
+                                                .error = name,
+                                                .result = {},
+                                                .cpu_seconds = 0.5,
+                                                .peak_bytes = 4096}));
+  EXPECT_EQ(read.kind, JobReply::Kind::kFailed);
+  EXPECT_EQ(read.worked, 7);
+  EXPECT_EQ(read.error, name);
+  EXPECT_EQ(read.cpu_seconds, 0.5);
+  EXPECT_EQ(read.peak_bytes, 4096);
+  EXPECT_FALSE(read.result.has_value());
+  // An error that names a file is what the file system says, and that may be no text.
+  const JobReply bytes = job_reply_from(
+      to_line({.kind = JobReply::Kind::kFailed, .error = "/a\xff: is no scan", .result = {}}));
+  EXPECT_EQ(bytes.error, "/a\ufffd: is no scan");
+}
+
+TEST(JobLineTest, ALineThatIsNoneIsRefused) {
+  for (const std::string line :
+       {"", "{", "null", "[]", "7", "\"done\"", "{}", "\xff", "{\"worked\":\"much\"}",
+        "{\"done\":null}", "{\"failed\":\"x\"}", "{\"done\":{\"format\":\"PLY\"},\"worked\":1}"}) {
+    EXPECT_THROW(job_request_from(line), std::runtime_error) << line;
+    EXPECT_THROW(job_reply_from(line), std::runtime_error) << line;
+  }
+  // Each field is asked for.
+  SurfaceJobResult result;
+  const std::string request = to_line(JobRequest{});
+  const std::string done = to_line({.kind = JobReply::Kind::kDone, .error = {}, .result = result});
+  const auto renamed = [](std::string line, std::size_t quote) {
+    return line.insert(quote + 1, "not ");
+  };
+  int names = 0;
+  for (std::size_t at = 0; (at = request.find('"', at)) != std::string::npos; ++at) {
+    const std::size_t end = request.find('"', at + 1);
+    if (request[end + 1] == ':') {
+      EXPECT_THROW(job_request_from(renamed(request, at)), std::runtime_error)
+          << request.substr(at);
+      ++names;
+    }
+    at = end;
+  }
+  EXPECT_GT(names, 10);
+  for (std::size_t at = 0; (at = done.find('"', at)) != std::string::npos; ++at) {
+    const std::size_t end = done.find('"', at + 1);
+    if (done[end + 1] == ':' && done.compare(at, 6, "\"done\"") != 0)
+      EXPECT_THROW(job_reply_from(renamed(done, at)), std::runtime_error) << done.substr(at);
+    at = end;
+  }
+}
+
+}  // namespace
+}  // namespace semigeo::jobs
