@@ -70,12 +70,10 @@ std::string cause_of(const ChildProcesses::Ended& ended, double timeout) {
   return "ended with exit code " + std::to_string(ended.exit_code) + " instead of an answer";
 }
 
-/// Those that jobs had opened when they were killed.
-void remove_empty_logs(const fs::path& folder) {
-  std::error_code ignored;
-  for (const fs::directory_entry& log : fs::directory_iterator(folder, ignored))
-    if (log.path().extension() == ".log" && log.file_size(ignored) == 0)
-      fs::remove(log.path(), ignored);
+/// One that a job had opened when it was killed.
+void remove_if_empty(const fs::path& log) {
+  std::error_code error;
+  if (fs::file_size(log, error) == 0 && !error) fs::remove(log, error);
 }
 
 class Executor {
@@ -104,7 +102,10 @@ class Executor {
       if (running_.empty()) break;
       handle(children_.wait());
     }
-    remove_empty_logs(options_.logs);
+    // Only ours: other tasks of a cluster may have opened theirs in the same folder.
+    for (std::size_t i = 0; i < plan_.size(); ++i)
+      if (outcomes_[i].attempts > 0) remove_if_empty(log_of(i));
+    if (options_.worker_log.empty()) remove_if_empty(worker_log());
     return std::move(outcomes_);
   }
 
@@ -195,7 +196,7 @@ class Executor {
   ChildProcesses::Id start_worker() {
     engine::Command command{.arguments = {options_.program.string(), "job"},
                             .limits = {},
-                            .log = options_.logs / "workers.log",  // what no job has printed
+                            .log = worker_log(),
                             .append_to_log = true,
                             .converses = true};
     // In somebody else's archive it may not be ours to write.
@@ -203,6 +204,10 @@ class Executor {
         open(command.log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
     if (!log) command.log.clear();
     return children_.start(command);
+  }
+
+  fs::path worker_log() const {
+    return options_.worker_log.empty() ? options_.logs / "workers.log" : options_.worker_log;
   }
 
   fs::path log_of(std::size_t job) const { return options_.logs / (plan_[job].job.name + ".log"); }
@@ -263,6 +268,8 @@ class Executor {
     release(at);
     io::remove_stale_partials(planned.job.output.parent_path());
     if (ending_) return;  // by us: the job has not run
+    // Who ends this process by its group or container, as Slurm and systemd do, ends children too.
+    if (ended.signal == SIGTERM && drain_.requests() > 0) return;
     const std::string cause = cause_of(ended, was.timeout);
     if (!stopping_ && outcomes_[was.job].attempts <= options_.retries) {
       progress_.say("again: " + planned.job.input.string() + ": " + cause);

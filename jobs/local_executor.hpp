@@ -44,6 +44,7 @@ struct ExecutorOptions {
   bool fail_fast = false;            ///< start nothing after the first failure
   Estimates estimates = {};          ///< of what jobs need
   double most_seconds = 0;           ///< start nothing that is not expected to end in time; 0: any
+  std::filesystem::path worker_log = {};  ///< what no job has printed; empty: workers.log in `logs`
 };
 
 /// Is told of each job that runs, in the thread that called run_jobs.

@@ -1,0 +1,434 @@
+#include "jobs/slurm_executor.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "engine/child_process.hpp"
+#include "io/atomic_file.hpp"
+#include "io/error.hpp"
+#include "io/xdmf.hpp"
+#include "jobs/digest_cache.hpp"
+#include "jobs/drain.hpp"
+#include "jobs/scan_size.hpp"
+#include "jobs/slurm_commands.hpp"
+#include "jobs/task_list.hpp"
+#include "jobs/utc_time.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+/// What is asked of the cluster is generous: what takes more is killed with all its task.
+constexpr double kMemoryFactor = 1.5;
+constexpr std::uint64_t kTaskMemory = std::uint64_t{512} << 20;  // of the task itself
+constexpr double kTimeFactor = 4;
+constexpr double kTimeoutFactor = 10;
+constexpr double kLeastTimeout = 600;
+
+constexpr double kShortestPause = 2;
+constexpr double kLongestPause = 15;
+constexpr double kPauseOfElapsed = 0.1;
+/// For so long squeue may fail: controllers are restarted, networks go away and come back.
+constexpr double kPatience = 300;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double seconds_since_1970() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+/// As one word of a shell.
+std::string quoted(const std::string& text) {
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + '\'';
+}
+
+fs::path made_folder(fs::path folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    throw io::Error(folder, "", "cannot be created: " + error.message(),
+                    "check the archive, its permissions and the free space");
+  return folder;
+}
+
+/// A network disk may know the names in a folder as they were a while ago, until it is opened.
+void look_again(const fs::path& folder) {
+  std::error_code ignored;
+  const fs::directory_iterator opened(folder, ignored);
+}
+
+class SlurmRun {
+ public:
+  SlurmRun(const std::vector<PlannedJob>& plan, const SurfaceParameters& parameters,
+           const fs::path& archive, const ExecutorOptions& options, const SlurmOptions& slurm,
+           Progress& progress, JobListener* listener)
+      : plan_(plan),
+        parameters_(parameters),
+        archive_(fs::absolute(archive)),
+        options_(options),
+        slurm_(slurm),
+        progress_(progress),
+        listener_(listener),
+        outcomes_(plan.size()),
+        settled_(plan.size()),
+        estimates_(plan.size()),
+        drain_(children_) {
+    options_.threads = std::max(1, options.threads);
+  }
+
+  SlurmOutcome run() {
+    const std::vector<std::size_t> jobs = sort_out();
+    if (jobs.empty() || stopping_) return {std::move(outcomes_), {}};
+    folder_ = made_folder(archive_ / "slurm" / (utc_time() + '-' + std::to_string(getpid())));
+    stages_.push_back(surface_stage(jobs));
+    SlurmOutcome outcome;
+    submit();
+    for (const Stage& stage : stages_)
+      outcome.stages.push_back({stage.array.name, stage.job, stage.array.tasks});
+    if (slurm_.wait) {
+      watch();
+      if (all_done()) remove_folder();
+    }
+    outcome.jobs = std::move(outcomes_);
+    return outcome;
+  }
+
+ private:
+  struct WatchedTask {
+    std::vector<std::size_t> jobs;
+    std::optional<FileStamp> seen = {};  ///< of the results that were read last
+    TaskResults results = {};
+    bool started = false;
+    bool gone = false;   ///< was not in the queue the last time
+    bool ended = false;  ///< nothing more will come of it
+  };
+  /// Jobs of one kind: an array job, which waits for those of other stages.
+  struct Stage {
+    fs::path list;
+    SlurmArray array;
+    std::vector<std::size_t> after = {};  ///< places in stages_, before this one
+    std::vector<WatchedTask> tasks = {};
+    std::string job = {};  ///< Slurm's number
+  };
+
+  /// Ends with what need not run, and with what cannot; returns the others.
+  std::vector<std::size_t> sort_out() {
+    std::vector<std::size_t> jobs;
+    for (std::size_t i = 0; i < plan_.size(); ++i) {
+      if (plan_[i].up_to_date) {
+        outcomes_[i].state = JobState::kUpToDate;
+        settled_[i] = true;
+      } else if (!plan_[i].error.empty()) {
+        start(i);
+        JobOutcome outcome;
+        outcome.state = JobState::kFailed;
+        outcome.error = plan_[i].error;
+        settle(i, std::move(outcome));
+      } else {
+        if (!plan_[i].sidecar_only)
+          estimates_[i] =
+              options_.estimates.of(scan_size(plan_[i].job.input), parameters_.levels + 1, 1);
+        jobs.push_back(i);
+      }
+    }
+    return jobs;
+  }
+
+  /// Tasks judge by headers: what is damaged behind one has to go before they look.
+  void remove_damaged(const PlannedJob& planned) const {
+    if (!is_complete(planned.job)) return;
+    std::error_code ignored;
+    fs::remove(planned.sidecar_only ? io::sidecar_of(planned.job.output) : planned.job.output,
+               ignored);
+  }
+
+  JobRequest request_of(std::size_t job) const {
+    const PlannedJob& planned = plan_[job];
+    JobRequest request{.job = planned.job,
+                       .parameters = parameters_,
+                       .sidecar_only = planned.sidecar_only,
+                       .threads = options_.threads,
+                       .memory_bytes = options_.memory_per_job,
+                       .log = archive_ / "logs" / (planned.job.name + ".log")};
+    request.job.input = fs::absolute(planned.job.input);
+    request.job.output = fs::absolute(planned.job.output);
+    return request;
+  }
+
+  Stage surface_stage(const std::vector<std::size_t>& jobs) {
+    std::vector<double> seconds;
+    for (const std::size_t job : jobs)
+      seconds.push_back(estimates_[job].seconds / options_.threads);
+    Stage stage{.list = folder_ / "tasks.jsonl",
+                .array = {.name = "semigeo-surface",
+                          .script = folder_ / "surface.sh",
+                          .folder = folder_,
+                          .cpus = options_.threads,
+                          .options = slurm_.sbatch_options}};
+    std::vector<std::vector<JobRequest>> requests;
+    for (const std::vector<std::size_t>& places : share_out(seconds, slurm_.scans_per_task)) {
+      WatchedTask& task = stage.tasks.emplace_back();
+      requests.emplace_back();
+      for (const std::size_t place : places) {
+        task.jobs.push_back(jobs[place]);
+        requests.back().push_back(request_of(jobs[place]));
+        remove_damaged(plan_[jobs[place]]);
+      }
+    }
+    stage.array.tasks = static_cast<int>(stage.tasks.size());
+    const TaskSettings settings = size_up(stage);
+    made_folder(folder_ / "results");
+    io::write_file_atomically(stage.list, task_list_text(settings, requests));
+    io::write_file_atomically(stage.array.script, "#!/bin/sh\nexec " +
+                                                      quoted(options_.program.string()) +
+                                                      " job --list " + quoted(stage.list.string()) +
+                                                      " --task \"$SLURM_ARRAY_TASK_ID\"\n");
+    return stage;
+  }
+
+  /// What every task of the array gets: enough for the one that needs most.
+  TaskSettings size_up(Stage& stage) const {
+    double most_bytes = 0;
+    double most_seconds = 0;
+    double longest_job = 0;
+    for (const WatchedTask& task : stage.tasks) {
+      std::vector<double> bytes;
+      double seconds = 0;
+      for (const std::size_t job : task.jobs) {
+        bytes.push_back(estimates_[job].peak_bytes);
+        seconds += estimates_[job].seconds / options_.threads;
+        longest_job = std::max(longest_job, estimates_[job].seconds);
+      }
+      std::ranges::sort(bytes, std::greater());
+      bytes.resize(std::min(bytes.size(), static_cast<std::size_t>(options_.threads)));
+      most_bytes = std::max(most_bytes, std::accumulate(bytes.begin(), bytes.end(), 0.0));
+      most_seconds = std::max(most_seconds, seconds);
+    }
+    TaskSettings settings{.archive = archive_,
+                          .threads = options_.threads,
+                          .memory_bytes = options_.memory_bytes,
+                          .timeout_seconds = options_.timeout_seconds,
+                          .retries = options_.retries,
+                          .fail_fast = options_.fail_fast};
+    stage.array.memory_bytes = options_.memory_bytes;
+    if (options_.memory_bytes == 0) {
+      settings.memory_bytes = static_cast<std::uint64_t>(kMemoryFactor * most_bytes);
+      stage.array.memory_bytes = settings.memory_bytes + kTaskMemory;
+    }
+    if (settings.timeout_seconds <= 0)
+      settings.timeout_seconds = std::max(kLeastTimeout, kTimeoutFactor * longest_job);
+    // A scan that hangs must not cost the others of its task their time.
+    stage.array.seconds =
+        kTimeFactor * most_seconds + (1 + options_.retries) * settings.timeout_seconds;
+    if (options_.most_seconds > 0) settings.deadline = seconds_since_1970() + options_.most_seconds;
+    return settings;
+  }
+
+  void submit() {
+    for (Stage& stage : stages_) {
+      for (const std::size_t before : stage.after) stage.array.after.push_back(stages_[before].job);
+      stage.job = commands_.submit(stage.array);
+      progress_.say("submitted: " + stage.array.name + " is Slurm's job " + stage.job + ", " +
+                    std::to_string(stage.array.tasks) +
+                    (stage.array.tasks == 1 ? " task" : " tasks"));
+    }
+  }
+
+  /// Until nothing is left in the queue.
+  void watch() {
+    for (;;) {
+      const double pause =
+          std::clamp(kPauseOfElapsed * seconds_since(start_), kShortestPause, kLongestPause);
+      children_.wait(pause);
+      stop_if_asked();
+      bool all_ended = true;
+      for (Stage& stage : stages_) {
+        look_at(stage);
+        all_ended &= std::ranges::all_of(stage.tasks, &WatchedTask::ended);
+      }
+      if (all_ended) return;
+    }
+  }
+
+  /// The queue first: what has left it has told its results.
+  void look_at(Stage& stage) {
+    const auto queue = queue_of(stage);
+    if (!queue) return;
+    look_again(stage.list.parent_path() / "results");
+    look_again(archive_ / "scans");
+    for (int number = 0; number < stage.array.tasks; ++number) {
+      WatchedTask& task = stage.tasks[static_cast<std::size_t>(number)];
+      if (task.ended) continue;
+      const auto at = queue->find(number);
+      if (at != queue->end() && at->second == TaskState::kRunning) {
+        task.started = true;
+        for (const std::size_t job : task.jobs) start(job);
+      }
+      read_results_of(task, results_of(stage.list, number));
+      if (at != queue->end()) {
+        task.gone = false;  // requeued, perhaps
+        continue;
+      }
+      const bool all_settled =
+          std::ranges::all_of(task.jobs, [this](std::size_t job) { return settled_[job]; });
+      // Results may be a moment late on a network disk.
+      if (all_settled || task.gone) end(task, log_of_task(stage.list, number));
+      task.gone = true;
+    }
+  }
+
+  /// Nothing if squeue fails; it is asked again, for a while.
+  std::optional<std::map<int, TaskState>> queue_of(const Stage& stage) {
+    try {
+      auto queue = commands_.queue(stage.job);
+      failing_since_.reset();
+      return queue;
+    } catch (const io::Error& e) {
+      if (!failing_since_) {
+        failing_since_ = Clock::now();
+        progress_.say(std::string(e.what()) + "; it is asked again");
+      }
+      if (seconds_since(*failing_since_) > kPatience) throw;
+      return std::nullopt;
+    }
+  }
+
+  void read_results_of(WatchedTask& task, const fs::path& file) {
+    const auto stamp = stamp_of(file);
+    if (!stamp || stamp == task.seen) return;
+    task.seen = stamp;
+    task.results = read_results(file);
+    for (const std::size_t job : task.jobs) {
+      const auto at = task.results.find(plan_[job].job.name);
+      if (settled_[job] || at == task.results.end()) continue;
+      const bool done = is_complete(plan_[job].job);
+      if (done == (at->second.state == JobState::kDone) && at->second.state != JobState::kNotRun)
+        settle(job, at->second);
+    }
+  }
+
+  /// The datasets themselves have the last word.
+  void end(WatchedTask& task, const fs::path& log) {
+    task.ended = true;
+    for (const std::size_t job : task.jobs) {
+      if (settled_[job]) continue;
+      const SurfaceJob& surface = plan_[job].job;
+      const auto at = task.results.find(surface.name);
+      JobOutcome outcome = at == task.results.end() ? JobOutcome{} : at->second;
+      const bool was_cancelled = ending_ || (stopping_ && !task.started);
+      if (is_complete(surface)) {
+        outcome.state = JobState::kDone;
+        outcome.error.clear();
+      } else if (at == task.results.end() && !was_cancelled) {
+        outcome.state = JobState::kFailed;
+        outcome.error = surface.input.string() + ": its task ended without a result; see " +
+                        log.string() + ", and run again";
+      } else if (outcome.state == JobState::kDone) {
+        outcome.state = JobState::kFailed;
+        outcome.error = surface.input.string() + ": its dataset was made, but is not at " +
+                        surface.output.string() +
+                        "; check that the archive is the same folder on all machines";
+      }
+      if (outcome.state != JobState::kNotRun) settle(job, std::move(outcome));
+    }
+  }
+
+  void start(std::size_t job) {
+    if (settled_[job] || outcomes_[job].attempts > 0) return;
+    outcomes_[job].attempts = 1;
+    progress_.scan_started(plan_[job].job.name);
+    if (listener_ != nullptr) listener_->job_started(plan_[job]);
+  }
+
+  void settle(std::size_t job, JobOutcome outcome) {
+    start(job);
+    settled_[job] = true;
+    outcomes_[job] = std::move(outcome);
+    const JobOutcome& known = outcomes_[job];
+    if (known.result) progress_.worked(known.result->vertices * known.result->levels);
+    const bool done = known.state == JobState::kDone;
+    if (!done) progress_.say("failed: " + known.error);
+    progress_.scan_ended(done, bytes_to_read(plan_[job]));
+    if (listener_ != nullptr) listener_->job_ended(plan_[job], known);
+    if (!done && options_.fail_fast) cancel(false);
+  }
+
+  void stop_if_asked() {
+    const int requests = drain_.requests();
+    if (requests > 0 && !stopping_) {
+      progress_.say("stopping: running tasks may end; interrupt again to cancel them");
+      cancel(false);
+    }
+    if (requests > 1 && !ending_) cancel(true);
+  }
+
+  void cancel(bool running_too) {
+    if (running_too ? ending_ : stopping_) return;
+    stopping_ = true;
+    ending_ = running_too;
+    for (const Stage& stage : stages_) {
+      if (stage.job.empty()) continue;
+      try {
+        running_too ? commands_.cancel(stage.job) : commands_.cancel_pending(stage.job);
+      } catch (const io::Error& e) {
+        progress_.say(e.what());
+      }
+    }
+  }
+
+  bool all_done() const {
+    return std::ranges::all_of(outcomes_, [](const JobOutcome& outcome) {
+      return outcome.state == JobState::kDone || outcome.state == JobState::kUpToDate;
+    });
+  }
+
+  /// Its logs tell nothing any more.
+  void remove_folder() const {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+    fs::remove(folder_.parent_path(), ignored);  // if it is empty
+  }
+
+  const std::vector<PlannedJob>& plan_;
+  const SurfaceParameters& parameters_;
+  const fs::path archive_;
+  ExecutorOptions options_;
+  const SlurmOptions& slurm_;
+  Progress& progress_;
+  JobListener* listener_;
+  SlurmCommands commands_;
+  std::vector<JobOutcome> outcomes_;
+  std::vector<bool> settled_;  ///< the outcome is known, and was told
+  std::vector<Estimate> estimates_;
+  fs::path folder_;  ///< of this run, ARCHIVE/slurm/<run>
+  std::vector<Stage> stages_;
+  std::optional<Clock::time_point> failing_since_;  ///< squeue
+  bool stopping_ = false;                           ///< no more tasks begin
+  bool ending_ = false;                             ///< running ones are cancelled, too
+  Clock::time_point start_ = Clock::now();
+  engine::ChildProcesses children_;  ///< has none: it is what signals wake
+  Drain drain_;
+};
+
+}  // namespace
+
+SlurmOutcome run_on_slurm(const std::vector<PlannedJob>& plan, const SurfaceParameters& parameters,
+                          const fs::path& archive, const ExecutorOptions& options,
+                          const SlurmOptions& slurm, Progress& progress, JobListener* listener) {
+  return SlurmRun(plan, parameters, archive, options, slurm, progress, listener).run();
+}
+
+}  // namespace semigeo::jobs
