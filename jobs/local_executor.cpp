@@ -70,12 +70,6 @@ std::string cause_of(const ChildProcesses::Ended& ended, double timeout) {
   return "ended with exit code " + std::to_string(ended.exit_code) + " instead of an answer";
 }
 
-/// One that a job had opened when it was killed.
-void remove_if_empty(const fs::path& log) {
-  std::error_code error;
-  if (fs::file_size(log, error) == 0 && !error) fs::remove(log, error);
-}
-
 class Executor {
  public:
   Executor(const std::vector<PlannedJob>& plan, const SurfaceParameters& parameters,
@@ -102,10 +96,7 @@ class Executor {
       if (running_.empty()) break;
       handle(children_.wait());
     }
-    // Only ours: other tasks of a cluster may have opened theirs in the same folder.
-    for (std::size_t i = 0; i < plan_.size(); ++i)
-      if (outcomes_[i].attempts > 0) remove_if_empty(log_of(i));
-    if (options_.worker_log.empty()) remove_if_empty(worker_log());
+    if (options_.worker_log.empty()) remove_empty_logs(options_.logs);
     return std::move(outcomes_);
   }
 
@@ -343,6 +334,13 @@ std::uintmax_t bytes_to_read(const PlannedJob& planned) {
   std::error_code error;
   const auto size = fs::file_size(planned.job.input, error);
   return error ? 0 : size;
+}
+
+void remove_empty_logs(const fs::path& folder) {
+  std::error_code ignored;
+  for (const fs::directory_entry& log : fs::directory_iterator(folder, ignored))
+    if (log.path().extension() == ".log" && log.file_size(ignored) == 0)
+      fs::remove(log.path(), ignored);
 }
 
 std::vector<JobOutcome> run_jobs(const std::vector<PlannedJob>& plan,

@@ -102,14 +102,20 @@ std::string in_one_line(std::string text) {
 
 [[noreturn]] void refuse(const std::string& program, const std::string& problem,
                          const Answer& answer) {
-  throw io::Error(program, "", problem + ", and said: " + in_one_line(answer.text), kRemedy);
+  // More tasks than the cluster's MaxArraySize.
+  const bool too_many = answer.text.find("Invalid job array") != std::string::npos;
+  throw io::Error(program, "", problem + ", and said: " + in_one_line(answer.text),
+                  too_many ? "give --scans-per-task more" : kRemedy);
+}
+
+std::string failure_of(const Answer& answer) {
+  return answer.exit_code < 0 ? "was killed"
+                              : "failed with exit code " + std::to_string(answer.exit_code);
 }
 
 Answer ask_successfully(const std::vector<std::string>& arguments) {
   Answer answer = ask(arguments);
-  if (answer.exit_code > 0)
-    refuse(arguments.front(), "failed with exit code " + std::to_string(answer.exit_code), answer);
-  if (answer.exit_code < 0) refuse(arguments.front(), "was killed", answer);
+  if (answer.exit_code != 0) refuse(arguments.front(), failure_of(answer), answer);
   return answer;
 }
 
@@ -195,19 +201,17 @@ std::map<int, TaskState> SlurmCommands::queue(const std::string& job) const {
   const Answer answer = ask(arguments);
   if (answer.exit_code == 0) return parse_queue(answer.text);
   if (is_forgotten(answer)) return {};
-  refuse(squeue_, "failed with exit code " + std::to_string(answer.exit_code), answer);
+  refuse(squeue_, failure_of(answer), answer);
 }
 
 void SlurmCommands::cancel_pending(const std::string& job) const {
   const Answer answer = ask({scancel_, "--state=PENDING", job});
-  if (answer.exit_code != 0 && !is_forgotten(answer))
-    refuse(scancel_, "failed with exit code " + std::to_string(answer.exit_code), answer);
+  if (answer.exit_code != 0 && !is_forgotten(answer)) refuse(scancel_, failure_of(answer), answer);
 }
 
 void SlurmCommands::cancel(const std::string& job) const {
   const Answer answer = ask({scancel_, job});
-  if (answer.exit_code != 0 && !is_forgotten(answer))
-    refuse(scancel_, "failed with exit code " + std::to_string(answer.exit_code), answer);
+  if (answer.exit_code != 0 && !is_forgotten(answer)) refuse(scancel_, failure_of(answer), answer);
 }
 
 }  // namespace semigeo::jobs

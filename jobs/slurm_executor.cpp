@@ -3,20 +3,15 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
+#include <chrono>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "engine/child_process.hpp"
-#include "io/atomic_file.hpp"
 #include "io/error.hpp"
-#include "io/xdmf.hpp"
 #include "jobs/digest_cache.hpp"
 #include "jobs/drain.hpp"
-#include "jobs/scan_size.hpp"
 #include "jobs/slurm_commands.hpp"
 #include "jobs/task_list.hpp"
 #include "jobs/utc_time.hpp"
@@ -26,13 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
-
-/// What is asked of the cluster is generous: what takes more is killed with all its task.
-constexpr double kMemoryFactor = 1.5;
-constexpr std::uint64_t kTaskMemory = std::uint64_t{512} << 20;  // of the task itself
-constexpr double kTimeFactor = 4;
-constexpr double kTimeoutFactor = 10;
-constexpr double kLeastTimeout = 600;
 
 constexpr double kShortestPause = 2;
 constexpr double kLongestPause = 15;
@@ -44,24 +32,12 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-double seconds_since_1970() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
-/// As one word of a shell.
-std::string quoted(const std::string& text) {
-  std::string word = "'";
-  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + '\'';
-}
-
-fs::path made_folder(fs::path folder) {
+void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error)
     throw io::Error(folder, "", "cannot be created: " + error.message(),
                     "check the archive, its permissions and the free space");
-  return folder;
 }
 
 /// A network disk may know the names in a folder as they were a while ago, until it is opened.
@@ -84,7 +60,6 @@ class SlurmRun {
         listener_(listener),
         outcomes_(plan.size()),
         settled_(plan.size()),
-        estimates_(plan.size()),
         drain_(children_) {
     options_.threads = std::max(1, options.threads);
   }
@@ -92,14 +67,20 @@ class SlurmRun {
   SlurmOutcome run() {
     const std::vector<std::size_t> jobs = sort_out();
     if (jobs.empty() || stopping_) return {std::move(outcomes_), {}};
-    folder_ = made_folder(archive_ / "slurm" / (utc_time() + '-' + std::to_string(getpid())));
-    stages_.push_back(surface_stage(jobs));
+    folder_ = archive_ / "slurm" / (utc_time() + '-' + std::to_string(getpid()));
+    make_folder(folder_ / "results");
     SlurmOutcome outcome;
-    submit();
-    for (const Stage& stage : stages_)
-      outcome.stages.push_back({stage.array.name, stage.job, stage.array.tasks});
+    try {
+      submit(surface_stage(plan_, jobs, parameters_, options_, slurm_, {archive_, folder_}));
+    } catch (...) {
+      if (stages_.empty()) remove_folder();  // nobody is going to read it
+      throw;
+    }
+    for (const WatchedStage& watched : stages_)
+      outcome.stages.push_back({watched.stage.array.name, watched.job, watched.stage.array.tasks});
     if (slurm_.wait) {
       watch();
+      remove_empty_logs(archive_ / "logs");
       if (all_done()) remove_folder();
     }
     outcome.jobs = std::move(outcomes_);
@@ -115,11 +96,8 @@ class SlurmRun {
     bool gone = false;   ///< was not in the queue the last time
     bool ended = false;  ///< nothing more will come of it
   };
-  /// Jobs of one kind: an array job, which waits for those of other stages.
-  struct Stage {
-    fs::path list;
-    SlurmArray array;
-    std::vector<std::size_t> after = {};  ///< places in stages_, before this one
+  struct WatchedStage {
+    SlurmStage stage;
     std::vector<WatchedTask> tasks = {};
     std::string job = {};  ///< Slurm's number
   };
@@ -138,113 +116,22 @@ class SlurmRun {
         outcome.error = plan_[i].error;
         settle(i, std::move(outcome));
       } else {
-        if (!plan_[i].sidecar_only)
-          estimates_[i] =
-              options_.estimates.of(scan_size(plan_[i].job.input), parameters_.levels + 1, 1);
         jobs.push_back(i);
       }
     }
     return jobs;
   }
 
-  /// Tasks judge by headers: what is damaged behind one has to go before they look.
-  void remove_damaged(const PlannedJob& planned) const {
-    if (!is_complete(planned.job)) return;
-    std::error_code ignored;
-    fs::remove(planned.sidecar_only ? io::sidecar_of(planned.job.output) : planned.job.output,
-               ignored);
-  }
-
-  JobRequest request_of(std::size_t job) const {
-    const PlannedJob& planned = plan_[job];
-    JobRequest request{.job = planned.job,
-                       .parameters = parameters_,
-                       .sidecar_only = planned.sidecar_only,
-                       .threads = options_.threads,
-                       .memory_bytes = options_.memory_per_job,
-                       .log = archive_ / "logs" / (planned.job.name + ".log")};
-    request.job.input = fs::absolute(planned.job.input);
-    request.job.output = fs::absolute(planned.job.output);
-    return request;
-  }
-
-  Stage surface_stage(const std::vector<std::size_t>& jobs) {
-    std::vector<double> seconds;
-    for (const std::size_t job : jobs)
-      seconds.push_back(estimates_[job].seconds / options_.threads);
-    Stage stage{.list = folder_ / "tasks.jsonl",
-                .array = {.name = "semigeo-surface",
-                          .script = folder_ / "surface.sh",
-                          .folder = folder_,
-                          .cpus = options_.threads,
-                          .options = slurm_.sbatch_options}};
-    std::vector<std::vector<JobRequest>> requests;
-    for (const std::vector<std::size_t>& places : share_out(seconds, slurm_.scans_per_task)) {
-      WatchedTask& task = stage.tasks.emplace_back();
-      requests.emplace_back();
-      for (const std::size_t place : places) {
-        task.jobs.push_back(jobs[place]);
-        requests.back().push_back(request_of(jobs[place]));
-        remove_damaged(plan_[jobs[place]]);
-      }
-    }
-    stage.array.tasks = static_cast<int>(stage.tasks.size());
-    const TaskSettings settings = size_up(stage);
-    made_folder(folder_ / "results");
-    io::write_file_atomically(stage.list, task_list_text(settings, requests));
-    io::write_file_atomically(stage.array.script, "#!/bin/sh\nexec " +
-                                                      quoted(options_.program.string()) +
-                                                      " job --list " + quoted(stage.list.string()) +
-                                                      " --task \"$SLURM_ARRAY_TASK_ID\"\n");
-    return stage;
-  }
-
-  /// What every task of the array gets: enough for the one that needs most.
-  TaskSettings size_up(Stage& stage) const {
-    double most_bytes = 0;
-    double most_seconds = 0;
-    double longest_job = 0;
-    for (const WatchedTask& task : stage.tasks) {
-      std::vector<double> bytes;
-      double seconds = 0;
-      for (const std::size_t job : task.jobs) {
-        bytes.push_back(estimates_[job].peak_bytes);
-        seconds += estimates_[job].seconds / options_.threads;
-        longest_job = std::max(longest_job, estimates_[job].seconds);
-      }
-      std::ranges::sort(bytes, std::greater());
-      bytes.resize(std::min(bytes.size(), static_cast<std::size_t>(options_.threads)));
-      most_bytes = std::max(most_bytes, std::accumulate(bytes.begin(), bytes.end(), 0.0));
-      most_seconds = std::max(most_seconds, seconds);
-    }
-    TaskSettings settings{.archive = archive_,
-                          .threads = options_.threads,
-                          .memory_bytes = options_.memory_bytes,
-                          .timeout_seconds = options_.timeout_seconds,
-                          .retries = options_.retries,
-                          .fail_fast = options_.fail_fast};
-    stage.array.memory_bytes = options_.memory_bytes;
-    if (options_.memory_bytes == 0) {
-      settings.memory_bytes = static_cast<std::uint64_t>(kMemoryFactor * most_bytes);
-      stage.array.memory_bytes = settings.memory_bytes + kTaskMemory;
-    }
-    if (settings.timeout_seconds <= 0)
-      settings.timeout_seconds = std::max(kLeastTimeout, kTimeoutFactor * longest_job);
-    // A scan that hangs must not cost the others of its task their time.
-    stage.array.seconds =
-        kTimeFactor * most_seconds + (1 + options_.retries) * settings.timeout_seconds;
-    if (options_.most_seconds > 0) settings.deadline = seconds_since_1970() + options_.most_seconds;
-    return settings;
-  }
-
-  void submit() {
-    for (Stage& stage : stages_) {
-      for (const std::size_t before : stage.after) stage.array.after.push_back(stages_[before].job);
-      stage.job = commands_.submit(stage.array);
-      progress_.say("submitted: " + stage.array.name + " is Slurm's job " + stage.job + ", " +
-                    std::to_string(stage.array.tasks) +
-                    (stage.array.tasks == 1 ? " task" : " tasks"));
-    }
+  void submit(SlurmStage stage) {
+    for (const std::size_t before : stage.after) stage.array.after.push_back(stages_[before].job);
+    WatchedStage watched{.stage = std::move(stage)};
+    const SlurmArray& array = watched.stage.array;
+    for (const std::vector<std::size_t>& jobs : watched.stage.tasks)
+      watched.tasks.push_back({.jobs = jobs});
+    watched.job = commands_.submit(array);
+    progress_.say("submitted: " + array.name + " is Slurm's job " + watched.job + ", " +
+                  std::to_string(array.tasks) + (array.tasks == 1 ? " task" : " tasks"));
+    stages_.push_back(std::move(watched));
   }
 
   /// Until nothing is left in the queue.
@@ -255,29 +142,30 @@ class SlurmRun {
       children_.wait(pause);
       stop_if_asked();
       bool all_ended = true;
-      for (Stage& stage : stages_) {
-        look_at(stage);
-        all_ended &= std::ranges::all_of(stage.tasks, &WatchedTask::ended);
+      for (WatchedStage& watched : stages_) {
+        look_at(watched);
+        all_ended &= std::ranges::all_of(watched.tasks, &WatchedTask::ended);
       }
       if (all_ended) return;
     }
   }
 
   /// The queue first: what has left it has told its results.
-  void look_at(Stage& stage) {
-    const auto queue = queue_of(stage);
+  void look_at(WatchedStage& watched) {
+    const auto queue = queue_of(watched.job);
     if (!queue) return;
-    look_again(stage.list.parent_path() / "results");
+    const fs::path& list = watched.stage.list;
+    look_again(list.parent_path() / "results");
     look_again(archive_ / "scans");
-    for (int number = 0; number < stage.array.tasks; ++number) {
-      WatchedTask& task = stage.tasks[static_cast<std::size_t>(number)];
+    for (int number = 0; number < watched.stage.array.tasks; ++number) {
+      WatchedTask& task = watched.tasks[static_cast<std::size_t>(number)];
       if (task.ended) continue;
       const auto at = queue->find(number);
       if (at != queue->end() && at->second == TaskState::kRunning) {
         task.started = true;
         for (const std::size_t job : task.jobs) start(job);
       }
-      read_results_of(task, results_of(stage.list, number));
+      read_results_of(task, results_of(list, number));
       if (at != queue->end()) {
         task.gone = false;  // requeued, perhaps
         continue;
@@ -285,15 +173,15 @@ class SlurmRun {
       const bool all_settled =
           std::ranges::all_of(task.jobs, [this](std::size_t job) { return settled_[job]; });
       // Results may be a moment late on a network disk.
-      if (all_settled || task.gone) end(task, log_of_task(stage.list, number));
+      if (all_settled || task.gone) end(task, log_of_task(list, number));
       task.gone = true;
     }
   }
 
   /// Nothing if squeue fails; it is asked again, for a while.
-  std::optional<std::map<int, TaskState>> queue_of(const Stage& stage) {
+  std::optional<std::map<int, TaskState>> queue_of(const std::string& job) {
     try {
-      auto queue = commands_.queue(stage.job);
+      auto queue = commands_.queue(job);
       failing_since_.reset();
       return queue;
     } catch (const io::Error& e) {
@@ -379,10 +267,9 @@ class SlurmRun {
     if (running_too ? ending_ : stopping_) return;
     stopping_ = true;
     ending_ = running_too;
-    for (const Stage& stage : stages_) {
-      if (stage.job.empty()) continue;
+    for (const WatchedStage& watched : stages_) {
       try {
-        running_too ? commands_.cancel(stage.job) : commands_.cancel_pending(stage.job);
+        running_too ? commands_.cancel(watched.job) : commands_.cancel_pending(watched.job);
       } catch (const io::Error& e) {
         progress_.say(e.what());
       }
@@ -412,9 +299,8 @@ class SlurmRun {
   SlurmCommands commands_;
   std::vector<JobOutcome> outcomes_;
   std::vector<bool> settled_;  ///< the outcome is known, and was told
-  std::vector<Estimate> estimates_;
-  fs::path folder_;  ///< of this run, ARCHIVE/slurm/<run>
-  std::vector<Stage> stages_;
+  fs::path folder_;            ///< of this run, ARCHIVE/slurm/<run>
+  std::vector<WatchedStage> stages_;
   std::optional<Clock::time_point> failing_since_;  ///< squeue
   bool stopping_ = false;                           ///< no more tasks begin
   bool ending_ = false;                             ///< running ones are cancelled, too

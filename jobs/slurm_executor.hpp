@@ -5,15 +5,9 @@
 #include <vector>
 
 #include "jobs/local_executor.hpp"
+#include "jobs/slurm_stage.hpp"
 
 namespace semigeo::jobs {
-
-/// Besides ExecutorOptions, which hold for each task: threads (0: one), memory, retries, ...
-struct SlurmOptions {
-  int scans_per_task = 0;                   ///< 0: so that a task lasts about five minutes
-  std::vector<std::string> sbatch_options;  ///< accounts, partitions, ...
-  bool wait = true;                         ///< else: submit, and that is all
-};
 
 /// What was given to Slurm.
 struct SubmittedStage {

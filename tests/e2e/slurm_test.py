@@ -157,6 +157,20 @@ class SlurmTest(SemigeoTest):
             self.assertTrue(line)
         return line
 
+    def test_jobs_of_a_task_that_was_cancelled_have_not_failed(self):
+        self.write_scans("a", "b")
+        process = self.start("--scans-per-task", "2", faults="b.ply=sleep")
+        self.wait_for(lambda: self.dataset("a.ply").exists())
+        self.cluster.command("scancel", "--name=semigeo-surface")
+        document = self.end_of(process, 75)
+        self.assertEqual(self.states(document), {"a.ply": "done", "b.ply": "not run"})
+
+    def test_what_does_not_end_in_time_is_not_begun(self):
+        self.write_scans("a")
+        document = self.on_slurm("--time-limit", "0.001", code=75)
+        self.assertEqual(self.states(document), {"a.ply": "not run"})
+        self.assertFalse(self.dataset("a.ply").exists())
+
     def test_nobody_waits(self):
         self.write_scans("a", "b")
         submitted = self.on_slurm("--no-wait", "--scans-per-task", "1")["submitted"]
@@ -212,6 +226,22 @@ class CommandsTest(SemigeoTest):
         self.assertIn(f"{self.programs}/sbatch: failed with exit code 1, and said: "
                       "sbatch: error: invalid account: geo; ", said)
         self.assertFalse((self.archive / "lock").exists())
+
+    def test_an_array_that_is_too_long_has_a_remedy(self):
+        for name in ("sbatch", "squeue", "scancel"):
+            self.program(name, "echo 'sbatch: error: Batch job submission failed: Invalid job array specification'; exit 1")
+        self.assertIn("; give --scans-per-task more\n", self.run_on_slurm(code=1).stderr)
+        self.assertFalse((self.archive / "slurm").exists())
+
+    def test_squeue_may_fail_for_a_while(self):
+        # A cluster of one machine: sbatch returns when the task has ended.
+        self.program("sbatch", 'for script; do :; done; SLURM_ARRAY_TASK_ID=0 /bin/sh "$script" >/dev/null 2>&1; echo 5')
+        mark = self.folder / "asked"
+        self.program("squeue", f"[ -e {mark} ] && exit 0; : > {mark}; echo 'Unable to contact slurm controller'; exit 1")
+        self.program("scancel", "exit 0")
+        process = self.run_on_slurm(code=0)
+        self.assertIn("said: Unable to contact slurm controller; ", process.stderr)
+        self.assertTrue(self.dataset("a.ply").exists())
 
     def test_options_reach_sbatch(self):
         self.program("sbatch", f'echo "$@" > {self.folder}/arguments; echo warning >&2; echo "17;here"')

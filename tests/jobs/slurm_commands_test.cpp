@@ -19,15 +19,15 @@ TEST(SlurmCommandsTest, SbatchIsAskedForEnough) {
                                            .cpus = 2,
                                            .memory_bytes = (std::uint64_t{1} << 30) + 1,
                                            .seconds = 61,
-                                           .options = {"account=geo", "-p", "long"}});
+                                           .options = {"account=geo", "-plong"}});
   for (const char* wanted : {"--parsable", "--array=0-7", "--cpus-per-task=2", "--mem=1025M",
                              "--time=2", "--chdir=/a", "--output=task-%a.log"})
     EXPECT_TRUE(has(arguments, wanted)) << wanted;
   EXPECT_FALSE(std::ranges::any_of(
       arguments, [](const std::string& a) { return a.starts_with("--dependency"); }));
   // What is passed on stands behind ours, so that it holds.
-  EXPECT_EQ(std::vector<std::string>(arguments.end() - 4, arguments.end()),
-            (std::vector<std::string>{"--account=geo", "-p", "long", "/a/s.sh"}));
+  EXPECT_EQ(std::vector<std::string>(arguments.end() - 3, arguments.end()),
+            (std::vector<std::string>{"--account=geo", "-plong", "/a/s.sh"}));
 }
 
 TEST(SlurmCommandsTest, AStageWaitsForThoseBefore) {
