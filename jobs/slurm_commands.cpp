@@ -163,8 +163,8 @@ std::vector<std::string> sbatch_arguments(const SlurmArray& array) {
   return arguments;
 }
 
-std::map<int, TaskState> parse_queue(const std::string& text) {
-  std::map<int, TaskState> tasks;
+std::map<int, QueuedTask> parse_queue(const std::string& text) {
+  std::map<int, QueuedTask> tasks;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
     std::istringstream words(line);
@@ -176,7 +176,9 @@ std::map<int, TaskState> parse_queue(const std::string& text) {
         state == "NODE_FAIL" || state == "BOOT_FAIL" || state == "DEADLINE")
       continue;
     const bool waits = state == "PENDING" || state.starts_with("REQUEUE") || state == "CONFIGURING";
-    tasks[std::stoi(number)] = waits ? TaskState::kPending : TaskState::kRunning;
+    QueuedTask& task = tasks[std::stoi(number)];
+    task.state = waits ? QueuedTask::State::kPending : QueuedTask::State::kRunning;
+    if (waits) words >> task.reason;
   }
   return tasks;
 }
@@ -195,9 +197,9 @@ std::string SlurmCommands::submit(const SlurmArray& array) const {
   refuse(sbatch_, "told no job id", answer);
 }
 
-std::map<int, TaskState> SlurmCommands::queue(const std::string& job) const {
+std::map<int, QueuedTask> SlurmCommands::queue(const std::string& job) const {
   const std::vector<std::string> arguments = {squeue_, "--noheader", "--array", "--jobs=" + job,
-                                              "--format=%K %T"};
+                                              "--format=%K %T %r"};
   const Answer answer = ask(arguments);
   if (answer.exit_code == 0) return parse_queue(answer.text);
   if (is_forgotten(answer)) return {};

@@ -24,7 +24,13 @@ struct SlurmArray {
 /// What sbatch is given.
 std::vector<std::string> sbatch_arguments(const SlurmArray& array);
 
-enum class TaskState { kPending, kRunning };
+/// A task that has not ended.
+struct QueuedTask {
+  enum class State { kPending, kRunning };
+  State state = State::kPending;
+  std::string reason = {};  ///< why it waits, in Slurm's word: "Resources", "PartitionTimeLimit"
+  friend bool operator==(const QueuedTask&, const QueuedTask&) = default;
+};
 
 /// Slurm, by its programs sbatch, squeue and scancel. Every function throws io::Error that names
 /// the program and says what it printed, if it fails or does not answer within a minute or two.
@@ -36,7 +42,7 @@ class SlurmCommands {
   /// Returns the job's id, as the others take it.
   std::string submit(const SlurmArray& array) const;
   /// Those of the job's tasks that have not ended, by number.
-  std::map<int, TaskState> queue(const std::string& job) const;
+  std::map<int, QueuedTask> queue(const std::string& job) const;
   /// Running tasks go on.
   void cancel_pending(const std::string& job) const;
   void cancel(const std::string& job) const;
@@ -47,7 +53,7 @@ class SlurmCommands {
   std::string scancel_;
 };
 
-/// Of what `squeue --noheader --array --format "%K %T"` printed; other lines are passed over.
-std::map<int, TaskState> parse_queue(const std::string& text);
+/// Of what `squeue --noheader --array --format "%K %T %r"` printed; other lines are passed over.
+std::map<int, QueuedTask> parse_queue(const std::string& text);
 
 }  // namespace semigeo::jobs

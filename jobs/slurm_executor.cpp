@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <map>
 #include <optional>
@@ -161,13 +162,14 @@ class SlurmRun {
       WatchedTask& task = watched.tasks[static_cast<std::size_t>(number)];
       if (task.ended) continue;
       const auto at = queue->find(number);
-      if (at != queue->end() && at->second == TaskState::kRunning) {
+      if (at != queue->end() && at->second.state == QueuedTask::State::kRunning) {
         task.started = true;
         for (const std::size_t job : task.jobs) start(job);
       }
       read_results_of(task, results_of(list, number));
       if (at != queue->end()) {
         task.gone = false;  // requeued, perhaps
+        tell_reason(at->second);
         continue;
       }
       const bool all_settled =
@@ -178,8 +180,20 @@ class SlurmRun {
     }
   }
 
+  /// Says why tasks wait, if that is not for others to end: somebody may have to do something.
+  void tell_reason(const QueuedTask& task) {
+    static constexpr std::array kUsual = {"",           "None",      "Resources",        "Priority",
+                                          "Dependency", "BeginTime", "JobArrayTaskLimit"};
+    if (stopping_ || task.state == QueuedTask::State::kRunning || task.reason == reason_told_ ||
+        std::ranges::find(kUsual, task.reason) != kUsual.end())
+      return;
+    reason_told_ = task.reason;
+    progress_.say("waiting: Slurm gives " + task.reason +
+                  " as the reason; if that does not pass, interrupt, and see --slurm-option");
+  }
+
   /// Nothing if squeue fails; it is asked again, for a while.
-  std::optional<std::map<int, TaskState>> queue_of(const std::string& job) {
+  std::optional<std::map<int, QueuedTask>> queue_of(const std::string& job) {
     try {
       auto queue = commands_.queue(job);
       failing_since_.reset();
@@ -302,8 +316,9 @@ class SlurmRun {
   fs::path folder_;            ///< of this run, ARCHIVE/slurm/<run>
   std::vector<WatchedStage> stages_;
   std::optional<Clock::time_point> failing_since_;  ///< squeue
-  bool stopping_ = false;                           ///< no more tasks begin
-  bool ending_ = false;                             ///< running ones are cancelled, too
+  std::string reason_told_;
+  bool stopping_ = false;  ///< no more tasks begin
+  bool ending_ = false;    ///< running ones are cancelled, too
   Clock::time_point start_ = Clock::now();
   engine::ChildProcesses children_;  ///< has none: it is what signals wake
   Drain drain_;

@@ -156,6 +156,13 @@ class SlurmTest(SemigeoTest):
             self.assertTrue(line)
         return line
 
+    def test_the_reason_why_tasks_wait_is_told(self):
+        self.write_scans("a")
+        process = self.start("--slurm-option", "hold")
+        self.assertIn(b"JobHeldUser", self.line_of(process, b"waiting"))
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(self.states(self.end_of(process, 75)), {"a.ply": "not run"})
+
     def test_jobs_of_a_task_that_was_cancelled_have_not_failed(self):
         self.write_scans("a", "b")
         process = self.start("--scans-per-task", "2", faults="b.ply=sleep")

@@ -40,13 +40,14 @@ TEST(SlurmCommandsTest, AStageWaitsForThoseBefore) {
 }
 
 TEST(SlurmCommandsTest, TheQueueIsReadByNumberAndState) {
+  using State = QueuedTask::State;
   const auto tasks = parse_queue(
-      "0 RUNNING\n1 COMPLETING\n2 PENDING\n3 CONFIGURING\n4 SUSPENDED\n"
-      "slurm: warning: something\nN/A PENDING\n\n5");
-  EXPECT_EQ(tasks, (std::map<int, TaskState>{{0, TaskState::kRunning},
-                                             {2, TaskState::kPending},
-                                             {3, TaskState::kPending},
-                                             {4, TaskState::kRunning}}));
+      "0 RUNNING None\n1 COMPLETING None\n2 PENDING Resources\n3 CONFIGURING\n"
+      "4 SUSPENDED None\nslurm: warning: something\nN/A PENDING None\n\n5");
+  EXPECT_EQ(tasks, (std::map<int, QueuedTask>{{0, {State::kRunning}},
+                                              {2, {State::kPending, "Resources"}},
+                                              {3, {State::kPending}},
+                                              {4, {State::kRunning}}}));
   EXPECT_TRUE(parse_queue("").empty());
 }
 
