@@ -81,7 +81,6 @@ class SlurmRun {
       outcome.stages.push_back({watched.stage.array.name, watched.job, watched.stage.array.tasks});
     if (slurm_.wait) {
       watch();
-      remove_empty_logs(archive_ / "logs");
       if (all_done()) remove_folder();
     }
     outcome.jobs = std::move(outcomes_);

@@ -175,6 +175,7 @@ int run(const RunOptions& options, const std::vector<FoundScan>& scans,
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   // Workers of a run that was killed may have lived a moment into this one.
   if (possession.lock) io::remove_stale_partials(options.config.archive / "scans");
+  if (possession.lock && options.slurm.wait) remove_empty_logs(options.config.archive / "logs");
   const ProcessUsage usage = process_usage();
   summary.cpu_seconds += usage.cpu_seconds;
   summary.peak_bytes = std::max(summary.peak_bytes, usage.peak_bytes);
