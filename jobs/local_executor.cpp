@@ -70,14 +70,6 @@ std::string cause_of(const ChildProcesses::Ended& ended, double timeout) {
   return "ended with exit code " + std::to_string(ended.exit_code) + " instead of an answer";
 }
 
-/// Those that jobs had opened when they were killed.
-void remove_empty_logs(const fs::path& folder) {
-  std::error_code ignored;
-  for (const fs::directory_entry& log : fs::directory_iterator(folder, ignored))
-    if (log.path().extension() == ".log" && log.file_size(ignored) == 0)
-      fs::remove(log.path(), ignored);
-}
-
 class Executor {
  public:
   Executor(const std::vector<PlannedJob>& plan, const SurfaceParameters& parameters,
@@ -104,7 +96,7 @@ class Executor {
       if (running_.empty()) break;
       handle(children_.wait());
     }
-    remove_empty_logs(options_.logs);
+    if (options_.worker_log.empty()) remove_empty_logs(options_.logs);
     return std::move(outcomes_);
   }
 
@@ -195,7 +187,7 @@ class Executor {
   ChildProcesses::Id start_worker() {
     engine::Command command{.arguments = {options_.program.string(), "job"},
                             .limits = {},
-                            .log = options_.logs / "workers.log",  // what no job has printed
+                            .log = worker_log(),
                             .append_to_log = true,
                             .converses = true};
     // In somebody else's archive it may not be ours to write.
@@ -203,6 +195,10 @@ class Executor {
         open(command.log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
     if (!log) command.log.clear();
     return children_.start(command);
+  }
+
+  fs::path worker_log() const {
+    return options_.worker_log.empty() ? options_.logs / "workers.log" : options_.worker_log;
   }
 
   fs::path log_of(std::size_t job) const { return options_.logs / (plan_[job].job.name + ".log"); }
@@ -263,6 +259,8 @@ class Executor {
     release(at);
     io::remove_stale_partials(planned.job.output.parent_path());
     if (ending_) return;  // by us: the job has not run
+    // Who ends this process by its group or container, as Slurm and systemd do, ends children too.
+    if (ended.signal == SIGTERM && drain_.requests() > 0) return;
     const std::string cause = cause_of(ended, was.timeout);
     if (!stopping_ && outcomes_[was.job].attempts <= options_.retries) {
       progress_.say("again: " + planned.job.input.string() + ": " + cause);
@@ -339,6 +337,13 @@ std::uintmax_t bytes_to_read(const PlannedJob& planned) {
   std::error_code error;
   const auto size = fs::file_size(planned.job.input, error);
   return error ? 0 : size;
+}
+
+void remove_empty_logs(const fs::path& folder) {
+  std::error_code ignored;
+  for (const fs::directory_entry& log : fs::directory_iterator(folder, ignored))
+    if (log.path().extension() == ".log" && log.file_size(ignored) == 0)
+      fs::remove(log.path(), ignored);
 }
 
 std::vector<JobOutcome> run_jobs(const std::vector<PlannedJob>& plan,

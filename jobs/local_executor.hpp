@@ -44,6 +44,9 @@ struct ExecutorOptions {
   bool fail_fast = false;            ///< start nothing after the first failure
   Estimates estimates = {};          ///< of what jobs need
   double most_seconds = 0;           ///< start nothing that is not expected to end in time; 0: any
+  /// Takes what no job has printed. Empty: workers.log in `logs`, which then is ours: when the jobs
+  /// have ended, empty logs are removed. Otherwise others may just have opened theirs in it.
+  std::filesystem::path worker_log = {};
 };
 
 /// Is told of each job that runs, in the thread that called run_jobs.
@@ -56,6 +59,9 @@ class JobListener {
 
 /// By what the time that a job takes is judged: the size of its scan, 0 if that is not read.
 std::uintmax_t bytes_to_read(const PlannedJob& planned);
+
+/// Those that jobs had opened when they were killed. Nobody must be writing into that folder.
+void remove_empty_logs(const std::filesystem::path& folder);
 
 /// Runs the jobs that are not up to date in child processes, which do one job after the other: as
 /// many side by side as cores and memory admit, the longest first; one that takes more than its

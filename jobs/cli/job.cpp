@@ -1,7 +1,11 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <filesystem>
+#include <memory>
+
 #include "jobs/cli/command.hpp"
+#include "jobs/task.hpp"
 #include "jobs/worker.hpp"
 
 namespace semigeo::jobs::cli {
@@ -10,17 +14,42 @@ namespace {
 /// Where whoever started this process expects the answers; by hand, on standard output.
 constexpr int kAnswers = 3;
 
+struct TaskOptions {
+  std::filesystem::path list;
+  int number = 0;
+};
+
 }  // namespace
 
 void add_job(CLI::App& app, int& exit_code) {
+  auto task = std::make_shared<TaskOptions>();
   CLI::App* command = app.add_subcommand(
-      "job", "Do the jobs that lines on standard input describe: what `run` starts");
+      "job",
+      "Do the jobs that lines on standard input, or a task of a list, describe: what `run` "
+      "starts");
   command->footer(
       "Examples:\n"
       "  semigeo job < requests.jsonl     one line of JSON a job; answers on standard output, or "
       "on\n"
-      "                                   descriptor 3 if that is open\n");
-  command->callback([&exit_code] {
+      "                                   descriptor 3 if that is open\n"
+      "  semigeo job --list archive/slurm/RUN/tasks.jsonl --task 3\n"
+      "                                   what Slurm starts: the jobs of a task, in child "
+      "processes;\n"
+      "                                   answers in results/3.jsonl beside the list. Exit codes: "
+      "0\n"
+      "                                   each job was done or has failed, 75 stopped before\n");
+  CLI::Option* list =
+      command->add_option("--list", task->list, "Tasks that a run has shared its jobs out to")
+          ->default_str("");
+  CLI::Option* number =
+      command->add_option("--task", task->number, "Number of one of them")->needs(list);
+  list->needs(number);
+  command->callback([task, &exit_code] {
+    if (!task->list.empty()) {
+      const auto program = std::filesystem::read_symlink("/proc/self/exe");
+      exit_code = run_task(task->list, task->number, program) ? kAllDone : kStoppedEarly;
+      return;
+    }
     const bool told = fcntl(kAnswers, F_GETFD) != -1;
     exit_code = serve_jobs(STDIN_FILENO, told ? kAnswers : STDOUT_FILENO);
   });

@@ -110,21 +110,34 @@ std::uintmax_t total_bytes(const std::vector<PlannedJob>& plan) {
   return bytes;
 }
 
-/// Runs what is not up to date, and tells `journal`, if there is one.
-std::vector<JobOutcome> run_plan(const RunOptions& options, const std::vector<PlannedJob>& plan,
-                                 RunJournal* journal, RunSummary& summary) {
-  std::vector<JobOutcome> outcomes(plan.size());
-  if (summary.up_to_date == std::ssize(plan)) {
-    for (JobOutcome& outcome : outcomes) outcome.state = JobState::kUpToDate;
-    return outcomes;
-  }
+/// Here, or where `options` says. `stages` are what was left to Slurm.
+std::vector<JobOutcome> execute(const RunOptions& options, const std::vector<PlannedJob>& plan,
+                                Progress& progress, RunJournal* journal,
+                                std::vector<SubmittedStage>& stages) {
   ExecutorOptions executor = options.executor;
   executor.program = fs::read_symlink("/proc/self/exe");
   executor.logs = options.config.archive / "logs";
   executor.threads = options.config.threads;
   executor.estimates = Estimates::read(options.config.archive);
+  if (options.where == "local")
+    return run_jobs(plan, options.config.surface, executor, progress, journal);
+  SlurmOutcome outcome = run_on_slurm(plan, options.config.surface, options.config.archive,
+                                      executor, options.slurm, progress, journal);
+  stages = std::move(outcome.stages);
+  return std::move(outcome.jobs);
+}
+
+/// Runs what is not up to date, and tells `journal`, if there is one.
+std::vector<JobOutcome> run_plan(const RunOptions& options, const std::vector<PlannedJob>& plan,
+                                 RunJournal* journal, RunSummary& summary,
+                                 std::vector<SubmittedStage>& stages) {
+  std::vector<JobOutcome> outcomes(plan.size());
+  if (summary.up_to_date == std::ssize(plan)) {
+    for (JobOutcome& outcome : outcomes) outcome.state = JobState::kUpToDate;
+    return outcomes;
+  }
   Progress progress(std::ssize(plan) - summary.up_to_date, total_bytes(plan));
-  outcomes = run_jobs(plan, options.config.surface, executor, progress, journal);
+  outcomes = execute(options, plan, progress, journal, stages);
   summary.vertex_levels = progress.vertex_levels();
   summary.done = std::ranges::count(outcomes, JobState::kDone, &JobOutcome::state);
   summary.failed = std::ranges::count(outcomes, JobState::kFailed, &JobOutcome::state);
@@ -161,11 +174,13 @@ int run(const RunOptions& options, const std::vector<FoundScan>& scans,
     print_plan(plan, false, true);
     std::fflush(stdout);  // it is to be read while the jobs run
   }
-  const auto outcomes = run_plan(options, plan, journal ? &*journal : nullptr, summary);
+  std::vector<SubmittedStage> stages;
+  const auto outcomes = run_plan(options, plan, journal ? &*journal : nullptr, summary, stages);
   summary.wall_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   // Workers of a run that was killed may have lived a moment into this one.
   if (possession.lock) io::remove_stale_partials(options.config.archive / "scans");
+  if (possession.lock && options.slurm.wait) remove_empty_logs(options.config.archive / "logs");
   const ProcessUsage usage = process_usage();
   summary.cpu_seconds += usage.cpu_seconds;
   summary.peak_bytes = std::max(summary.peak_bytes, usage.peak_bytes);
@@ -178,6 +193,10 @@ int run(const RunOptions& options, const std::vector<FoundScan>& scans,
     if (!journal->problem().empty())
       std::fprintf(stderr, "semigeo: %s\n", journal->problem().c_str());
     learn(options, plan, outcomes, cache);
+  }
+  if (!options.slurm.wait && !stages.empty()) {
+    print_submitted(stages, options.json);
+    return summary.failed == 0 ? kAllDone : kSomeFailed;
   }
   if (options.json) {
     print_json(plan, outcomes, options.config.surface, summary);
@@ -222,6 +241,9 @@ void add_run(CLI::App& app, int& exit_code) {
       "  semigeo run scans/ --output archive --dry-run   what would run, and why\n"
       "  semigeo run scans/ --output archive --dry-run --explain   what differs\n"
       "  semigeo run scans/ --output archive --verify    also what the disk has damaged since\n"
+      "  semigeo run scans/ --output archive --executor slurm --slurm-option partition=long\n"
+      "  semigeo run scans/ --output archive --executor slurm --no-wait   run again to see the "
+      "rest\n"
       "\n"
       "What is up to date, by content, is left alone; a run that was interrupted goes on where it\n"
       "stopped. Options may also come from --config FILE. Exit codes: 0 all done, 1 some scans "

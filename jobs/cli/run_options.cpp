@@ -167,6 +167,30 @@ void add_executor_options(CLI::App* command, RunOptions& options) {
       ->configurable(false);
 }
 
+/// Where jobs run, if not here.
+void add_slurm_options(CLI::App* command, RunOptions& options) {
+  command
+      ->add_option("--executor", options.where,
+                   "Where jobs run: here, or as an array job of Slurm, where --threads (0: one),\n"
+                   "--memory, --retries, ... hold for each task")
+      ->check(CLI::IsMember({"local", "slurm"}));
+  command
+      ->add_option("--scans-per-task", options.slurm.scans_per_task,
+                   "Scans of one task of Slurm; 0: so that it lasts about five minutes")
+      ->check(CLI::Range(0, 1000000));
+  command
+      ->add_option("--slurm-option", options.slurm.sbatch_options,
+                   "Passed on to sbatch (account=geo); may be repeated")
+      ->default_str("")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command
+      ->add_flag(
+          "--no-wait", [&options](std::int64_t) { options.slurm.wait = false; },
+          "Print the numbers of Slurm's jobs, and end. A later run picks up what is missing")
+      ->configurable(false);
+}
+
 /// Seconds until the clock shows HH:MM next.
 double seconds_until(const std::string& clock) {
   int hours = 0;
@@ -208,6 +232,7 @@ void add_run_options(CLI::App* command, RunOptions& options) {
   add_feature_options(command, options);
   add_storage_options(command, options);
   add_executor_options(command, options);
+  add_slurm_options(command, options);
   command->add_flag("--json", options.json, "Results as JSON on stdout")->configurable(false);
   command
       ->add_flag("--verify", options.verify,
@@ -228,6 +253,8 @@ void add_run_options(CLI::App* command, RunOptions& options) {
 }
 
 void apply_words(RunOptions& options) {
+  if (options.where != "slurm" && !options.slurm.wait)
+    throw CLI::ValidationError("--no-wait", "give --executor slurm with it");
   if (!options.until.empty()) {
     const double left = seconds_until(options.until);
     double& most = options.executor.most_seconds;

@@ -5,6 +5,7 @@
 
 #include "jobs/config.hpp"
 #include "jobs/local_executor.hpp"
+#include "jobs/slurm_executor.hpp"
 
 namespace semigeo::jobs::cli {
 
@@ -21,6 +22,8 @@ struct RunOptions {
   std::string compression = "deflate";
   bool json = false;
   ExecutorOptions executor;
+  std::string where = "local";  ///< or "slurm"
+  SlurmOptions slurm;
   bool keep_going = false;  ///< said aloud
   std::string until;        ///< "06:00", local time; empty: no end
   bool dry_run = false;

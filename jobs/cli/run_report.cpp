@@ -191,4 +191,13 @@ void print_text(const std::vector<PlannedJob>& plan, const std::vector<JobOutcom
               short_duration(summary.cpu_seconds).c_str(), summary.peak_bytes / 1e6);
 }
 
+void print_submitted(const std::vector<SubmittedStage>& stages, bool json) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const SubmittedStage& stage : stages) {
+    list.push_back({{"name", stage.name}, {"job", stage.job}, {"tasks", stage.tasks}});
+    if (!json) std::printf("%s\n", stage.job.c_str());
+  }
+  if (json) std::printf("%s\n", nlohmann::json{{"submitted", list}}.dump(2).c_str());
+}
+
 }  // namespace semigeo::jobs::cli

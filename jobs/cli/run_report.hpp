@@ -5,6 +5,7 @@
 
 #include "jobs/local_executor.hpp"
 #include "jobs/plan.hpp"
+#include "jobs/slurm_executor.hpp"
 
 namespace semigeo::jobs::cli {
 
@@ -40,5 +41,8 @@ void print_json(const std::vector<PlannedJob>& plan, const std::vector<JobOutcom
 /// that fell into parts; then the failures; then the totals.
 void print_text(const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,
                 const RunSummary& summary);
+
+/// What nobody waits for: the numbers of Slurm's jobs, a line each, or as JSON.
+void print_submitted(const std::vector<SubmittedStage>& stages, bool json);
 
 }  // namespace semigeo::jobs::cli

@@ -1,0 +1,142 @@
+#include "jobs/slurm_stage.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <numeric>
+
+#include "io/atomic_file.hpp"
+#include "io/xdmf.hpp"
+#include "jobs/scan_size.hpp"
+#include "jobs/task_list.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMemoryFactor = 1.5;
+constexpr std::uint64_t kTaskMemory = std::uint64_t{512} << 20;  // of the task itself
+constexpr double kTimeFactor = 4;
+constexpr double kTimeoutFactor = 10;
+constexpr double kLeastTimeout = 600;
+
+double seconds_since_1970() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+/// As one word of a shell.
+std::string quoted(const std::string& text) {
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + '\'';
+}
+
+/// Tasks judge by headers: what is damaged behind one has to go before they look.
+void remove_damaged(const PlannedJob& planned) {
+  if (!is_complete(planned.job)) return;
+  std::error_code ignored;
+  fs::remove(planned.sidecar_only ? io::sidecar_of(planned.job.output) : planned.job.output,
+             ignored);
+}
+
+/// Tasks run in another folder.
+SurfaceJob with_absolute_paths(SurfaceJob job) {
+  job.input = fs::absolute(job.input);
+  job.output = fs::absolute(job.output);
+  return job;
+}
+
+/// What each task of a stage gets: enough for the one that needs most.
+struct Needs {
+  double bytes = 0;        ///< of the jobs that run side by side
+  double seconds = 0;      ///< of all jobs
+  double longest_job = 0;  ///< seconds
+};
+
+Needs needs_of(const SlurmStage& stage, const std::vector<Estimate>& estimates, int threads) {
+  Needs most;
+  for (const std::vector<std::size_t>& jobs : stage.tasks) {
+    std::vector<double> bytes;
+    double seconds = 0;
+    for (const std::size_t job : jobs) {
+      bytes.push_back(estimates[job].peak_bytes);
+      seconds += estimates[job].seconds / threads;
+      most.longest_job = std::max(most.longest_job, estimates[job].seconds);
+    }
+    std::ranges::sort(bytes, std::greater());
+    bytes.resize(std::min(bytes.size(), static_cast<std::size_t>(threads)));
+    most.bytes = std::max(most.bytes, std::accumulate(bytes.begin(), bytes.end(), 0.0));
+    most.seconds = std::max(most.seconds, seconds);
+  }
+  return most;
+}
+
+TaskSettings size_up(SlurmArray& array, const Needs& needs, const ExecutorOptions& options) {
+  TaskSettings settings{.archive = {},
+                        .threads = array.cpus,
+                        .memory_bytes = options.memory_bytes,
+                        .timeout_seconds = options.timeout_seconds,
+                        .retries = options.retries,
+                        .fail_fast = options.fail_fast};
+  array.memory_bytes = options.memory_bytes;
+  if (options.memory_bytes == 0) {
+    settings.memory_bytes = static_cast<std::uint64_t>(kMemoryFactor * needs.bytes);
+    array.memory_bytes = settings.memory_bytes + kTaskMemory;
+  }
+  if (settings.timeout_seconds <= 0)
+    settings.timeout_seconds = std::max(kLeastTimeout, kTimeoutFactor * needs.longest_job);
+  // A scan that hangs must not cost the others of its task their time.
+  array.seconds = kTimeFactor * needs.seconds + (1 + options.retries) * settings.timeout_seconds;
+  if (options.most_seconds > 0) settings.deadline = seconds_since_1970() + options.most_seconds;
+  return settings;
+}
+
+}  // namespace
+
+SlurmStage surface_stage(const std::vector<PlannedJob>& plan, const std::vector<std::size_t>& jobs,
+                         const SurfaceParameters& parameters, const ExecutorOptions& options,
+                         const SlurmOptions& slurm, const SlurmFolders& folders) {
+  const int threads = std::max(1, options.threads);
+  std::vector<Estimate> estimates(plan.size());
+  std::vector<double> seconds;
+  for (const std::size_t job : jobs) {
+    if (!plan[job].sidecar_only)
+      estimates[job] =
+          options.estimates.of(scan_size(plan[job].job.input), parameters.levels + 1, 1);
+    seconds.push_back(estimates[job].seconds / threads);
+  }
+  SlurmStage stage{.array = {.name = "semigeo-surface",
+                             .script = folders.run / "surface.sh",
+                             .folder = folders.run,
+                             .cpus = threads,
+                             .options = slurm.sbatch_options},
+                   .list = folders.run / "tasks.jsonl",
+                   .tasks = {}};
+  std::vector<std::vector<JobRequest>> requests;
+  for (const std::vector<std::size_t>& places : share_out(seconds, slurm.scans_per_task)) {
+    stage.tasks.emplace_back();
+    requests.emplace_back();
+    for (const std::size_t place : places) {
+      const PlannedJob& planned = plan[jobs[place]];
+      remove_damaged(planned);
+      stage.tasks.back().push_back(jobs[place]);
+      requests.back().push_back({.job = with_absolute_paths(planned.job),
+                                 .parameters = parameters,
+                                 .sidecar_only = planned.sidecar_only,
+                                 .threads = threads,
+                                 .memory_bytes = options.memory_per_job,
+                                 .log = folders.archive / "logs" / (planned.job.name + ".log")});
+    }
+  }
+  stage.array.tasks = static_cast<int>(stage.tasks.size());
+  TaskSettings settings = size_up(stage.array, needs_of(stage, estimates, threads), options);
+  settings.archive = folders.archive;
+  io::write_file_atomically(stage.list, task_list_text(settings, requests));
+  io::write_file_atomically(stage.array.script,
+                            "#!/bin/sh\nexec " + quoted(options.program.string()) + " job --list " +
+                                quoted(stage.list.string()) + " --task \"$SLURM_ARRAY_TASK_ID\"\n");
+  return stage;
+}
+
+}  // namespace semigeo::jobs

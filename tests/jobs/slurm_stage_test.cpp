@@ -1,0 +1,101 @@
+#include "jobs/slurm_stage.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "jobs/task_list.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kMegabyte = 1'000'000;
+
+class SlurmStageTest : public testing::Test {
+ protected:
+  SlurmStageTest() {
+    fs::create_directories(folders_.run);
+    options_.program = "/opt/it's/semigeo";
+  }
+  /// A scan of so many bytes, of which only the size counts.
+  void add(const std::string& name, std::uint64_t bytes) {
+    PlannedJob& planned = plan_.emplace_back();
+    planned.job.name = name;
+    planned.job.input = folder_ / name;
+    planned.job.output = folders_.archive / "scans" / (name + ".vtkhdf");
+    std::ofstream(planned.job.input) << "ply\nformat binary_little_endian 1.0\n";
+    fs::resize_file(planned.job.input, bytes);
+    jobs_.push_back(plan_.size() - 1);
+  }
+  SlurmStage stage() const { return surface_stage(plan_, jobs_, {}, options_, slurm_, folders_); }
+  Estimate estimate(std::size_t job) const {
+    return options_.estimates.of(
+        {.format = "PLY binary", .bytes = fs::file_size(plan_[job].job.input)},
+        SurfaceParameters{}.levels + 1, 1);
+  }
+
+  tests::TemporaryFolder folder_;
+  SlurmFolders folders_ = {.archive = folder_ / "archive", .run = folder_ / "archive/slurm/run"};
+  std::vector<PlannedJob> plan_;
+  std::vector<std::size_t> jobs_;
+  ExecutorOptions options_;
+  SlurmOptions slurm_;
+};
+
+TEST_F(SlurmStageTest, AsksForWhatTheLargestTaskNeeds) {
+  add("small.ply", kMegabyte);
+  add("large.ply", 100 * kMegabyte);
+  add("other.ply", kMegabyte);
+  slurm_.scans_per_task = 2;
+  const SlurmStage made = stage();
+  EXPECT_EQ(made.tasks, (std::vector<std::vector<std::size_t>>{{1, 0}, {2}}));
+  EXPECT_EQ(made.array.tasks, 2);
+  EXPECT_EQ(made.array.cpus, 1);
+  EXPECT_GT(static_cast<double>(made.array.memory_bytes), 1.4 * estimate(1).peak_bytes);
+  EXPECT_LT(static_cast<double>(made.array.memory_bytes), 2 * estimate(1).peak_bytes + 1e9);
+  const Task task = read_task(made.list, 0);
+  ASSERT_EQ(task.jobs.size(), 2u);
+  EXPECT_EQ(task.jobs[0].job.name, "large.ply");
+  EXPECT_LT(task.settings.memory_bytes, made.array.memory_bytes);
+  // Even if its scan hangs as often as it may, the others have their time.
+  EXPECT_GT(made.array.seconds,
+            2 * task.settings.timeout_seconds + estimate(0).seconds + estimate(1).seconds);
+  EXPECT_GT(task.settings.timeout_seconds, 5 * estimate(1).seconds);
+}
+
+TEST_F(SlurmStageTest, WhatTheUserSaysHolds) {
+  add("a.ply", kMegabyte);
+  options_.threads = 3;
+  options_.memory_bytes = std::uint64_t{7} << 30;
+  options_.memory_per_job = 17 * kMegabyte;
+  options_.timeout_seconds = 5000;
+  options_.retries = 0;
+  options_.fail_fast = true;
+  const SlurmStage made = stage();
+  EXPECT_EQ(made.array.cpus, 3);
+  EXPECT_EQ(made.array.memory_bytes, options_.memory_bytes);
+  EXPECT_GT(made.array.seconds, 5000);
+  EXPECT_LT(made.array.seconds, 5100);
+  const Task task = read_task(made.list, 0);
+  EXPECT_EQ(task.settings.threads, 3);
+  EXPECT_EQ(task.settings.retries, 0);
+  EXPECT_TRUE(task.settings.fail_fast);
+  EXPECT_EQ(task.settings.deadline, 0);
+  EXPECT_EQ(task.jobs[0].memory_bytes, options_.memory_per_job);
+}
+
+TEST_F(SlurmStageTest, TheScriptIsOfQuotedWords) {
+  add("a.ply", kMegabyte);
+  std::ifstream script(stage().array.script);
+  const std::string text{std::istreambuf_iterator<char>(script), {}};
+  EXPECT_EQ(text, "#!/bin/sh\nexec '/opt/it'\\''s/semigeo' job --list '" +
+                      (folders_.run / "tasks.jsonl").string() +
+                      "' --task \"$SLURM_ARRAY_TASK_ID\"\n");
+}
+
+}  // namespace
+}  // namespace semigeo::jobs
