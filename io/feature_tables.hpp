@@ -15,12 +15,8 @@ namespace semigeo::io {
 // Features and contours of a level in its groups `features` and `contours`; io/DATASET.md is their
 // description.
 
-/// Contours are of the kinds FeatureKind::gaussian and mean. The maxima of torsion along them are
-/// the features of the kind that comes two later.
-inline constexpr int kContourKinds = 2;
-constexpr int torsion_of(int contour_kind) {
-  return contour_kind + kContourKinds;
-}
+using kernels::kContourKinds;
+using kernels::torsion_of;
 
 /// Contours of one kind: C of them, with M points together.
 struct EncodedContours {

@@ -10,7 +10,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <fstream>
 #include <mutex>
 #include <new>
@@ -23,6 +22,7 @@
 #include "io/error.hpp"
 #include "io/xdmf.hpp"
 #include "jobs/job_line.hpp"
+#include "jobs/process_usage.hpp"
 
 namespace semigeo::jobs {
 namespace {
@@ -179,13 +179,6 @@ bool remake_sidecar(const SurfaceJob& job) {
   return true;
 }
 
-/// What this process has taken so far.
-double cpu_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
 /// From now on the peak is that of what follows.
 void restart_peak() {
   std::ofstream("/proc/self/clear_refs") << '5';
@@ -203,7 +196,7 @@ double peak_bytes() {
 
 JobReply do_job(const JobRequest& request, Reporter& reporter) {
   JobReply reply;
-  const double cpu_before = cpu_seconds();
+  const double cpu_before = process_usage().cpu_seconds;
   restart_peak();
   try {
     const OutputTo log(request.log);
@@ -233,7 +226,7 @@ JobReply do_job(const JobRequest& request, Reporter& reporter) {
   // What the next job is allowed counts from what this process holds.
   malloc_trim(0);
   reply.worked = reporter.unreported();
-  reply.cpu_seconds = cpu_seconds() - cpu_before;
+  reply.cpu_seconds = process_usage().cpu_seconds - cpu_before;
   reply.peak_bytes = peak;
   return reply;
 }

@@ -20,6 +20,13 @@ inline constexpr int kFeatureKinds = 4;
 inline constexpr std::array<const char*, kFeatureKinds> kFeatureKindNames = {
     "gaussian", "mean", "gaussian_torsion", "mean_torsion"};
 
+/// Contours are of the kinds gaussian and mean. The maxima of torsion along them are the features
+/// of the kind that comes two later.
+inline constexpr int kContourKinds = 2;
+constexpr int torsion_of(int contour_kind) {
+  return contour_kind + kContourKinds;
+}
+
 /// One feature of a level. Lengths and curvatures in the scan's length unit.
 struct Feature {
   std::int64_t vertex = kNone;  ///< nearest row of the level
@@ -48,7 +55,7 @@ struct SampledContours {
 /// All that a level has of these.
 struct LevelFeatures {
   std::array<std::vector<Feature>, kFeatureKinds> of_kind;  ///< by FeatureKind
-  std::array<SampledContours, 2> contours;                  ///< of K = 0, of H = 0
+  std::array<SampledContours, kContourKinds> contours;      ///< of K = 0, of H = 0
 };
 
 }  // namespace semigeo::kernels

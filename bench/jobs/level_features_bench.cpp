@@ -71,27 +71,13 @@ void level_features_real_scan(benchmark::State& state) {
   level_features(state, io::read_scan(path).mesh, static_cast<int>(state.range(0)));
 }
 
-BENCHMARK(level_features_icosphere)
-    ->ArgName("threads")
-    ->Arg(1)
-    ->Arg(2)
-    ->Iterations(kLevels)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime();
-BENCHMARK(level_features_noisy_torus)
-    ->ArgName("threads")
-    ->Arg(1)
-    ->Arg(2)
-    ->Iterations(kLevels)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime();
-BENCHMARK(level_features_real_scan)
-    ->ArgName("threads")
-    ->Arg(1)
-    ->Arg(2)
-    ->Iterations(kLevels)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime();
+void on_one_and_two_threads(benchmark::internal::Benchmark* bench) {
+  bench->ArgName("threads")->Arg(1)->Arg(2)->Iterations(kLevels);
+  bench->Unit(benchmark::kMillisecond)->UseRealTime();
+}
+BENCHMARK(level_features_icosphere)->Apply(on_one_and_two_threads);
+BENCHMARK(level_features_noisy_torus)->Apply(on_one_and_two_threads);
+BENCHMARK(level_features_real_scan)->Apply(on_one_and_two_threads);
 
 }  // namespace
 }  // namespace semigeo::bench

@@ -86,12 +86,12 @@ class Finder {
     kernels::LevelFeatures result;
     // Parts of each are serial: four at once.
     workers_.for_blocks(4, 1, [&](IndexRange range) {
-      const std::int64_t kind = range.begin % 2;
+      const auto kind = static_cast<int>(range.begin % kernels::kContourKinds);
       const CurvatureField& field = kind == 0 ? gaussian_ : mean_;
       if (range.begin < 2)
         result.of_kind[kind] = maxima(field);
       else
-        contours(field, result.contours[kind], result.of_kind[2 + kind]);
+        contours(field, result.contours[kind], result.of_kind[kernels::torsion_of(kind)]);
     });
     return result;
   }

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "tests/jobs/unusual_parameters.hpp"
+
 namespace semigeo::jobs {
 namespace {
 
@@ -16,22 +18,7 @@ TEST(ConfigTest, ParametersAreJsonWithSortedKeys) {
       R"("feature_completeness":0.6,"feature_radius":1.5,"fill_holes":0,)"
       R"("length_unit":"unknown","level":"slope","levels":8,"principal":false,)"
       R"("remesh":true,"rescale":"size","schedule":"uniform","step":1.0,"surface":"curved","target_vertices":0})");
-  const SurfaceParameters other = {.levels = 3,
-                                   .preparation = {.fill_holes = 40,
-                                                   .decimate = 0.25,
-                                                   .decimate_in_length_units = true,
-                                                   .target_vertices = 1993},
-                                   .evolution = {.curved = false,
-                                                 .coordinates = kernels::Coordinates::polar,
-                                                 .schedule = Schedule::octaves,
-                                                 .rescale = Rescale::edges,
-                                                 .remesh = false,
-                                                 .principal = true,
-                                                 .step_factor = 0.1},
-                                   .features = {.radius = 0, .min_completeness = 0.75},
-                                   .recognition_level = 2,
-                                   .compression = io::Compression::none,
-                                   .length_unit = "m\"m"};
+  const SurfaceParameters other = unusual_parameters();
   EXPECT_EQ(
       to_json(other),
       R"({"compression":"none","coordinates":"polar","decimate":"0.25 length units",)"

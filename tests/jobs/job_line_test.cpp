@@ -8,6 +8,8 @@
 
 #include "io/utf8.hpp"
 
+#include "tests/jobs/unusual_parameters.hpp"
+
 namespace semigeo::jobs {
 namespace {
 
@@ -104,22 +106,7 @@ std::vector<std::string> values_of(const JobRequest& request) {
 TEST(JobLineTest, EveryFieldOfARequestArrives) {
   JobRequest request;
   every_field_of_request(request, Distinct());
-  request.parameters = {.levels = 3,
-                        .preparation = {.fill_holes = 40,
-                                        .decimate = 0.25,
-                                        .decimate_in_length_units = true,
-                                        .target_vertices = 1993},
-                        .evolution = {.curved = false,
-                                      .coordinates = kernels::Coordinates::polar,
-                                      .schedule = Schedule::octaves,
-                                      .rescale = Rescale::edges,
-                                      .remesh = false,
-                                      .principal = true,
-                                      .step_factor = 0.1},
-                        .features = {.radius = 0, .min_completeness = 0.75},
-                        .recognition_level = 2,
-                        .compression = io::Compression::none,
-                        .length_unit = "m\"m"};
+  request.parameters = unusual_parameters();
   for (const JobRequest& sent : {request, JobRequest{}}) {
     const std::string line = to_line(sent);
     EXPECT_EQ(line.find('\n'), std::string::npos);
