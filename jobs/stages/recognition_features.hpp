@@ -1,0 +1,30 @@
+#pragma once
+
+#include "engine/run_context.hpp"
+#include "io/dataset.hpp"
+#include "kernels/recognition_model.hpp"
+#include "kernels/surface_builder.hpp"
+
+namespace semigeo::jobs {
+
+/// What of a surface recognition looks at; part of the key of a library.
+struct RecognitionParameters {
+  int levels = 3;           ///< octave levels 0, 1, ...
+  int most_features = 400;  ///< of each level and kind, those that stand out most
+  bool torsion = false;     ///< maxima of torsion as well
+  int samples = 4000;       ///< of the surface, at most
+};
+
+/// Features on octave levels, without rescaling, and samples of a built surface. The surface need
+/// not be ordered.
+kernels::RecognitionModel recognition_model(const kernels::BuiltSurface& built,
+                                            const RecognitionParameters& parameters,
+                                            const engine::RunContext& context);
+
+/// The same of a dataset: its own features if it was made with octave levels, without rescaling and
+/// with as many levels; otherwise its level 0 is evolved anew.
+kernels::RecognitionModel recognition_model(const io::Dataset& dataset,
+                                            const RecognitionParameters& parameters,
+                                            const engine::RunContext& context);
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "kernels/triplet.hpp"
+
+namespace semigeo::kernels {
+
+/// Points spread evenly over a surface, with its unit normals there.
+struct SurfaceSamples {
+  std::vector<Eigen::Vector3f> points;   ///< (M) length units
+  std::vector<Eigen::Vector3f> normals;  ///< (M)
+  float spacing = 0;                     ///< square root of the area that each stands for
+};
+
+/// What a library knows of an object.
+struct RecognitionModel {
+  std::string name;    ///< of its dataset
+  std::string digest;  ///< content digest of its dataset
+  std::string length_unit = "unknown";
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< add it for the scan's coordinates
+  Eigen::Vector3f centre = Eigen::Vector3f::Zero();  ///< of the bounding box
+  float diagonal = 0;                                ///< of the bounding box
+  OrientedFeatures features;
+  SurfaceSamples samples;
+};
+
+/// A triplet of a library, whose cell the library's index tells.
+struct Posting {
+  Invariants invariants = {};
+  std::uint32_t model = 0;
+  std::array<std::uint16_t, 3> corners = {};
+  friend bool operator==(const Posting&, const Posting&) = default;
+};
+
+}  // namespace semigeo::kernels
