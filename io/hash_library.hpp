@@ -50,4 +50,8 @@ class HashLibrary {
   void verify() const;
 };
 
+/// The key of the job that made a library; Error if the file is absent, unreadable, of another
+/// format or version, or incomplete. Reads a few kB.
+std::string library_key(const std::filesystem::path& path);
+
 }  // namespace semigeo::io
