@@ -2,13 +2,14 @@
 
 #include <filesystem>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "bench/recognition/bench_model.hpp"
 #include "engine/run_context.hpp"
 #include "io/hash_library.hpp"
 #include "jobs/stages/recognition_features.hpp"
+#include "kernels/recognition_model.hpp"
+#include "kernels/triplet.hpp"
 
 namespace semigeo::recognition {
 
@@ -24,14 +25,13 @@ class ModelLibraries {
   std::unique_ptr<io::HashLibrary> without(const std::vector<std::size_t>& left_out) const;
 
  private:
-  struct Run {
-    std::string name;
-    std::size_t model = 0;
-    std::filesystem::path path;
+  struct Entry {
+    std::size_t index = 0;  ///< of the models given
+    kernels::RecognitionModel model;
+    std::vector<kernels::Triplet> triplets;
   };
   std::filesystem::path folder_;
-  const engine::RunContext& context_;
-  std::vector<Run> runs_;  ///< by name
+  std::vector<Entry> entries_;  ///< by name
 };
 
 }  // namespace semigeo::recognition

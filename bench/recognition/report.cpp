@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <set>
+#include <utility>
 
 #include "bench/support/quantile.hpp"
 
@@ -105,6 +105,11 @@ void print_seconds(std::span<const Outcome> outcomes) {
   }
 }
 
+void print_scene(const Outcome& o) {
+  std::printf("  %-5s %-24s seed %-3llu", o.kind.c_str(), o.scene.c_str(),
+              static_cast<unsigned long long>(o.seed));
+}
+
 Json pose_json(const PoseError& error) {
   if (!error.known()) return nullptr;
   return {{"degrees", error.degrees}, {"centre", error.centre},   {"box", error.box},
@@ -138,6 +143,7 @@ Json outcome_json(const Outcome& o) {
           {"best_wrong", {{"model", o.best_wrong}, {"score", o.best_wrong_score}}},
           {"false_objects", o.false_objects},
           {"false_score", o.false_score},
+          {"false_best", o.false_best},
           {"scale_space_seconds", seconds_json(o.scale_space)},
           {"search_seconds", seconds_json(o.search)}};
 }
@@ -168,23 +174,28 @@ void print(std::span<const Outcome> outcomes) {
 void print_misses(std::span<const Outcome> outcomes) {
   bool any = false;
   for (const Outcome& o : outcomes) {
-    const bool missed = !absent(o) && !(o.posed() && o.reported());
-    if (!missed && o.false_objects == 0) continue;
-    if (!any) std::printf("\nMissed or wrong\n");
-    any = true;
-    std::printf("  %-5s %-24s seed %-3llu", o.kind.c_str(), o.scene.c_str(),
-                static_cast<unsigned long long>(o.seed));
-    if (missed)
-      std::printf(" %s", !o.named() ? "not named" : !o.posed() ? "wrong pose" : "not reported");
-    std::printf(": first %s;", o.first.empty() ? "nothing" : o.first.c_str());
+    if (absent(o) || (o.posed() && o.reported())) continue;
+    if (!std::exchange(any, true)) std::printf("\nMissed\n");
+    print_scene(o);
+    std::printf(" %s, first %s;",
+                !o.named()   ? "not named"
+                : !o.posed() ? "wrong pose"
+                             : "not reported",
+                o.first.empty() ? "nothing" : o.first.c_str());
     for (const ObjectOutcome& object : o.objects)
       std::printf(" %s: rank %d, score %.3f%s%s;", object.model.c_str(), object.rank, object.score,
                   right(object.ranked) ? "" : ", pose wrong",
                   object.reported ? "" : ", not reported");
     if (!o.best_wrong.empty())
       std::printf(" best wrong %s %.3f", o.best_wrong.c_str(), o.best_wrong_score);
-    if (o.false_objects > 0) std::printf("; %d false, %.3f", o.false_objects, o.false_score);
     std::printf("\n");
+  }
+  any = false;
+  for (const Outcome& o : outcomes) {
+    if (o.false_objects == 0) continue;
+    if (!std::exchange(any, true)) std::printf("\nReported, but not there or not so\n");
+    print_scene(o);
+    std::printf(" %d, the best %s %.3f\n", o.false_objects, o.false_best.c_str(), o.false_score);
   }
 }
 

@@ -94,8 +94,10 @@ Outcome judged(const Scene& scene, ModelSpan models, const std::vector<std::stri
       if (there) object.reported = true;
     }
     if (there) continue;
-    ++outcome.false_objects;
-    outcome.false_score = std::max(outcome.false_score, candidate.score);
+    if (outcome.false_objects++ == 0 || candidate.score > outcome.false_score) {
+      outcome.false_best = names.at(candidate.model);
+      outcome.false_score = candidate.score;
+    }
   }
   return outcome;
 }

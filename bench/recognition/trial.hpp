@@ -42,7 +42,8 @@ struct Outcome {
   std::string best_wrong;  ///< of the ranking
   double best_wrong_score = 0;
   int false_objects = 0;   ///< reported, but not there, or not so
-  double false_score = 0;  ///< the best of them
+  std::string false_best;  ///< the best of them
+  double false_score = 0;
   std::int64_t scene_triplets = 0;
   std::int64_t matches = 0;
   Seconds scale_space;  ///< features and samples of the scene
