@@ -16,6 +16,7 @@
 #include "bench/support/examples_first.hpp"
 #include "io/atomic_file.hpp"
 #include "jobs/stages/recognise_scene.hpp"
+#include "jobs/stages/thesis_recognition.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace semigeo::recognition {
@@ -30,6 +31,8 @@ constexpr int kUsage = 2;
 struct Options {
   ModelChoice models;
   ExperimentOptions experiments;
+  std::string method = "own";
+  jobs::ThesisRecognitionOptions thesis;
   bool short_run = false;
   bool verbose = false;
   fs::path json;
@@ -53,6 +56,14 @@ void shorten(Options& options) {
 }
 
 Method method_of(const Options& options, const engine::RunContext& context) {
+  if (options.method == "thesis")
+    return [&options, &context](const io::HashLibrary& library) -> Recogniser {
+      const auto database =
+          std::make_shared<jobs::ThesisDatabase>(library, options.thesis, context);
+      return [&options, database](const kernels::RecognitionModel& scene) {
+        return jobs::ranked(database->scores(scene), options.experiments.recognition);
+      };
+    };
   return [&options, &context](const io::HashLibrary& library) -> Recogniser {
     return [&](const kernels::RecognitionModel& scene) {
       return jobs::recognise_scene(library, scene, options.experiments.recognition, context);
@@ -70,6 +81,7 @@ void tell(const Outcome& o) {
 
 int run(Options options, const std::vector<std::string>& arguments) {
   if (options.short_run) shorten(options);
+  if (options.method == "thesis") options.experiments.parameters.torsion = true;
   engine::Workers workers(options.threads);
   engine::Observer observer;
   const engine::RunContext context{workers, observer, {}};
@@ -121,6 +133,11 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--samples", e.parameters.samples, "Of a surface, at most")
       ->check(CLI::Range(10, 1'000'000));
   app.add_option("--min-score", e.recognition.min_score, "Below it nothing is reported");
+  app.add_option("--method", options.method, "thesis: all triplets, votes, clusters of poses")
+      ->check(CLI::IsMember({"own", "thesis"}));
+  app.add_option("--strongest", options.thesis.hash.strongest, "thesis: features of each kind")
+      ->check(CLI::Range(3, 1000));
+  app.add_option("--level", options.thesis.level, "thesis: of the features");
   app.add_flag("--short", options.short_run, "Four small models, a few kinds, one seed");
   app.add_option("--json", options.json, "Every scene");
   app.add_flag("--verbose", options.verbose, "Each scene as it is done, on stderr");
