@@ -1,5 +1,6 @@
 #include "kernels/surface_samples.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
 #include <cmath>

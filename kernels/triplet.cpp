@@ -1,5 +1,6 @@
 #include "kernels/triplet.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
