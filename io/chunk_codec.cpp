@@ -61,12 +61,14 @@ void gather_rows(const ArrayView& view, std::int64_t first, std::int64_t count, 
     const std::int64_t row_bytes = view.columns * size_of(view.memory_type);
     if (view.row_order.empty() && view.row_stride == row_bytes) {
       std::memcpy(out, view.data + first * row_bytes, static_cast<std::size_t>(count * row_bytes));
-    } else if (view.memory_type == feature) {
+    } else if (!members_of(view.memory_type).empty()) {
       gather_records(view, first, count, out);
     } else if (size_of(view.memory_type) == 4) {
       convert_rows<std::uint32_t, std::uint32_t>(view, first, count, out);
     } else if (size_of(view.memory_type) == 8) {
       convert_rows<std::uint64_t, std::uint64_t>(view, first, count, out);
+    } else if (size_of(view.memory_type) == 2) {
+      convert_rows<std::uint16_t, std::uint16_t>(view, first, count, out);
     } else {
       convert_rows<std::uint8_t, std::uint8_t>(view, first, count, out);
     }

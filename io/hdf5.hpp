@@ -84,6 +84,9 @@ class Hdf5File {
 
   void create_group(const std::string& path);
   void write_array(const std::string& path, const EncodedArray& array);
+  class Growing;
+  /// An array whose chunks come one by one; others may be written in between.
+  Growing begin_array(const std::string& path, const ArrayShape& shape);
   void write_virtual(const std::string& path, ElementType type, int columns,
                      std::span<const VirtualPiece> pieces);
   void write_attribute(const std::string& object, const std::string& name,
@@ -145,6 +148,27 @@ class Hdf5File {
   const KnownArray& look_at(const std::string& path) const;
   mutable std::map<std::string, KnownArray> arrays_;
   mutable std::map<std::pair<std::string, std::string>, AttributeValue> attributes_;
+};
+
+/// An array that is being written to a file, which must outlive it and stay where it is.
+class Hdf5File::Growing {
+ public:
+  const ArrayShape& shape() const { return shape_; }
+  const std::string& path() const { return path_; }
+  void write_chunk(const EncodedChunk& chunk);  ///< the next
+  /// To be called after the last chunk.
+  void close();
+
+ private:
+  friend class Hdf5File;
+  Growing(const Hdf5File& file, std::string path, const ArrayShape& shape, Hdf5Handle handle)
+      : file_(&file), path_(std::move(path)), shape_(shape), handle_(std::move(handle)) {}
+
+  const Hdf5File* file_;
+  std::string path_;
+  ArrayShape shape_;
+  Hdf5Handle handle_;
+  std::int64_t written_ = 0;
 };
 
 /// An open array of a file, which must outlive it.

@@ -24,8 +24,10 @@ hid_t number_type(ElementType type) {
       return H5T_STD_I64LE;
     case ElementType::uint8:
       return H5T_STD_U8LE;
-    case ElementType::feature:
-      break;
+    case ElementType::uint16:
+      return H5T_STD_U16LE;
+    default:
+      break;  // a record
   }
   return H5I_INVALID_HID;
 }
@@ -46,16 +48,17 @@ Hdf5Handle record_type(std::span<const RecordMember> members, std::int64_t size)
 }
 
 Hdf5Handle hdf5_type(ElementType type) {
-  if (type == ElementType::feature) return record_type(kFeatureMembers, size_of(type));
+  if (!members_of(type).empty()) return record_type(members_of(type), size_of(type));
   return {H5Tcopy(number_type(type)), H5Tclose};
 }
 
 std::optional<ElementType> element_type(hid_t type) {
   using enum ElementType;
-  for (const ElementType known : {float32, float64, int32, int64, uint8})
+  for (const ElementType known : {float32, float64, int32, int64, uint8, uint16})
     if (H5Tequal(type, number_type(known)) > 0) return known;
-  if (H5Tget_class(type) == H5T_COMPOUND && H5Tequal(type, hdf5_type(feature).get()) > 0)
-    return feature;
+  if (H5Tget_class(type) != H5T_COMPOUND) return std::nullopt;
+  for (const ElementType known : {feature, oriented_feature, posting})
+    if (H5Tequal(type, hdf5_type(known).get()) > 0) return known;
   return std::nullopt;
 }
 
@@ -92,10 +95,15 @@ std::optional<Compression> compression_of(hid_t properties, ElementType type) {
 }  // namespace
 
 void Hdf5File::write_array(const std::string& path, const EncodedArray& array) {
-  const std::int64_t file = id();
-  const ArrayShape& shape = array.shape;
-  if (static_cast<std::int64_t>(array.chunks.size()) != shape.chunk_count())
+  if (static_cast<std::int64_t>(array.chunks.size()) != array.shape.chunk_count())
     throw std::invalid_argument(path + ": not every chunk was encoded");
+  Growing growing = begin_array(path, array.shape);
+  for (const EncodedChunk& chunk : array.chunks) growing.write_chunk(chunk);
+  growing.close();
+}
+
+Hdf5File::Growing Hdf5File::begin_array(const std::string& path, const ArrayShape& shape) {
+  const std::int64_t file = id();
   const Hdf5Handle properties = array_properties();
   // HDF5 has no chunks of a fixed extent of 0; an empty array is contiguous and holds no byte.
   if (shape.rows > 0) {
@@ -108,18 +116,30 @@ void Hdf5File::write_array(const std::string& path, const EncodedArray& array) {
     H5Pset_fletcher32(properties.get());
   }
   const Hdf5Handle space = make_space(shape.rows, shape.columns);
-  Hdf5Handle set(checked(H5Dcreate2(file, path.c_str(), hdf5_type(shape.type).get(), space.get(),
-                                    H5P_DEFAULT, properties.get(), H5P_DEFAULT),
-                         path, "create the dataset"),
-                 H5Dclose);
-  for (std::size_t i = 0; i < array.chunks.size(); ++i) {
-    const EncodedChunk& chunk = array.chunks[i];
-    const Extent offset = extent(static_cast<std::int64_t>(i) * shape.chunk_rows, 0);
-    checked(H5Dwrite_chunk(set.get(), H5P_DEFAULT, chunk.filter_mask, offset.data(),
-                           chunk.bytes.size(), chunk.bytes.data()),
-            path, "write a chunk");
-  }
-  checked(set.close(), path, "close the dataset");
+  return {*this,
+          path,
+          shape,
+          {checked(H5Dcreate2(file, path.c_str(), hdf5_type(shape.type).get(), space.get(),
+                              H5P_DEFAULT, properties.get(), H5P_DEFAULT),
+                   path, "create the dataset"),
+           H5Dclose}};
+}
+
+void Hdf5File::Growing::write_chunk(const EncodedChunk& chunk) {
+  prepare_library();
+  if (written_ >= shape_.chunk_count())
+    throw std::invalid_argument(path_ + ": more chunks than its shape has");
+  const Extent offset = extent(written_++ * shape_.chunk_rows, 0);
+  file_->checked(H5Dwrite_chunk(handle_.get(), H5P_DEFAULT, chunk.filter_mask, offset.data(),
+                                chunk.bytes.size(), chunk.bytes.data()),
+                 path_, "write a chunk");
+}
+
+void Hdf5File::Growing::close() {
+  prepare_library();
+  if (written_ != shape_.chunk_count())
+    throw std::invalid_argument(path_ + ": not every chunk was written");
+  file_->checked(handle_.close(), path_, "close the dataset");
 }
 
 void Hdf5File::write_virtual(const std::string& path, ElementType type, int columns,
