@@ -8,7 +8,8 @@
 
 #include "io/array_reader.hpp"
 #include "io/hash_library_format.hpp"
-#include "io/packed_normal.hpp"
+#include "io/packed_model.hpp"
+#include "io/packed_rows.hpp"
 
 namespace semigeo::io {
 namespace {
@@ -61,16 +62,6 @@ Hdf5File::Array open_rows(const Hdf5File& file, const std::string& path, Element
   return array;
 }
 
-bool is_finite(const kernels::OrientedFeature& f) {
-  return f.position.allFinite() && f.normal.allFinite() && std::isfinite(f.scale_free_gaussian) &&
-         std::isfinite(f.scale_free_mean) && std::isfinite(f.value);
-}
-
-bool is_finite(std::span<const std::byte> floats) {
-  const std::vector<float> values = unpacked<float>(floats);
-  return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
-}
-
 }  // namespace
 
 struct HashLibrary::State {
@@ -83,12 +74,13 @@ struct HashLibrary::State {
   void read_cells();
   void require_models(std::size_t found, const char* path) const;
   void check_posting(const Posting& posting, std::int64_t index) const;
+  void check_features(std::span<const std::byte> records, std::int64_t first) const;
+  void check_floats(std::span<const std::byte> floats, const std::string& path) const;
   std::vector<std::byte> read_chunk(const Hdf5File::Array& array, std::int64_t chunk) const;
   std::vector<std::byte> read_rows(const Hdf5File::Array& array,
                                    const std::vector<std::int64_t>& offsets,
                                    std::size_t model) const;
-  void check_feature(const kernels::OrientedFeature& feature, std::size_t model) const;
-  void check_floats(std::span<const std::byte> floats, const std::string& path) const;
+  PackedModel read_model(std::size_t model) const;
 
   Hdf5File file;
   mutable std::mutex mutex;  // of the file; what it gave is checked and unpacked without
@@ -229,20 +221,40 @@ std::vector<std::byte> HashLibrary::State::read_rows(const Hdf5File::Array& arra
   return rows;
 }
 
-void HashLibrary::State::check_feature(const kernels::OrientedFeature& feature,
-                                       std::size_t model) const {
-  if (feature.code >= kernels::kFeatureCodes ||
-      feature.level >= level_offsets[model + 1] - level_offsets[model])
-    file.refuse(kFeatureArray.path,
-                "model " + std::to_string(model) + " has a feature of no kind or level");
-  if (!is_finite(feature))
-    file.refuse(kFeatureArray.path,
-                "model " + std::to_string(model) + " has a feature that is not finite");
+PackedModel HashLibrary::State::read_model(std::size_t model) const {
+  return {.name = models[model].name,
+          .digest = models[model].digest,
+          .length_unit = units[model],
+          .origin = Eigen::Vector3d(&origins[3 * model]),
+          .centre = Eigen::Vector3f(&centres[3 * model]),
+          .diagonal = models[model].diagonal,
+          .sample_spacing = spacings[model],
+          .level_scales = unpacked<float>(read_rows(level_scales, level_offsets, model)),
+          .features = read_rows(features, feature_offsets, model),
+          .sample_points = read_rows(sample_points, sample_offsets, model),
+          .sample_normals = read_rows(sample_normals, sample_offsets, model)};
+}
+
+// Some rows of all models' features, of which `first` is the first.
+void HashLibrary::State::check_features(std::span<const std::byte> records,
+                                        std::int64_t first) const {
+  auto model = static_cast<std::size_t>(std::ranges::upper_bound(feature_offsets, first) -
+                                        feature_offsets.begin() - 1);
+  while (!records.empty()) {
+    const std::size_t here =
+        std::min(records.size(), static_cast<std::size_t>(feature_offsets[model + 1] - first) *
+                                     kOrientedFeatureBytes);
+    const auto levels = static_cast<std::size_t>(level_offsets[model + 1] - level_offsets[model]);
+    if (const auto problem = problem_of_features(records.first(here), levels))
+      file.refuse(kFeatureArray.path, "model " + std::to_string(model) + " " + *problem);
+    records = records.subspan(here);
+    first = feature_offsets[++model];
+  }
 }
 
 void HashLibrary::State::check_floats(std::span<const std::byte> floats,
                                       const std::string& path) const {
-  if (!is_finite(floats)) file.refuse(path, "has numbers that are not finite");
+  if (const auto problem = problem_of_floats(floats)) file.refuse(path, *problem);
 }
 
 HashLibrary::HashLibrary(const std::filesystem::path& path)
@@ -288,29 +300,10 @@ kernels::RecognitionModel HashLibrary::read_model(std::int64_t model) const {
   const auto count = static_cast<std::int64_t>(models().size());
   if (model < 0 || model >= count)
     state_->file.refuse("/models", "has no model " + counted(model, count));
-  const auto i = static_cast<std::size_t>(model);
-  kernels::RecognitionModel result;
-  result.name = models()[i].name;
-  result.digest = models()[i].digest;
-  result.length_unit = state_->units[i];
-  result.origin = Eigen::Vector3d(&state_->origins[3 * i]);
-  result.centre = Eigen::Vector3f(&state_->centres[3 * i]);
-  result.diagonal = models()[i].diagonal;
-  result.samples.spacing = state_->spacings[i];
-  result.features.features = unpacked<kernels::OrientedFeature>(
-      state_->read_rows(state_->features, state_->feature_offsets, i), kOrientedFeatureBytes);
-  for (const kernels::OrientedFeature& feature : result.features.features)
-    state_->check_feature(feature, i);
-  const auto scales = state_->read_rows(state_->level_scales, state_->level_offsets, i);
-  state_->check_floats(scales, kLevelScaleArray.path);
-  result.features.level_scale = unpacked<float>(scales);
-  const auto points = state_->read_rows(state_->sample_points, state_->sample_offsets, i);
-  state_->check_floats(points, kSamplePointArray.path);
-  result.samples.points = unpacked<Eigen::Vector3f>(points);
-  for (const PackedNormal& normal :
-       unpacked<PackedNormal>(state_->read_rows(state_->sample_normals, state_->sample_offsets, i)))
-    result.samples.normals.push_back(unpack_normal(normal));
-  return result;
+  const PackedModel packed = state_->read_model(static_cast<std::size_t>(model));
+  if (const auto problem = problem_of(packed))
+    state_->file.refuse("/models", "model " + std::to_string(model) + " " + *problem);
+  return unpack_model(packed);
 }
 
 namespace {
@@ -353,8 +346,7 @@ void HashLibrary::verify() const {
   const State& state = *state_;
   const std::lock_guard lock(state.mutex);
   PostingCheck check(state.file, state.cells, state.models.size());
-  std::int64_t feature = 0;  // the next that goes by, and whose it is
-  std::size_t model = 0;
+  std::int64_t feature = 0;  // the next that goes by
   const std::string found =
       content_digest(state.file, [&](const std::string& path, std::span<const std::byte> rows) {
         if (path == kPostings) {
@@ -363,11 +355,8 @@ void HashLibrary::verify() const {
             check.add(posting);
           }
         } else if (path == kFeatureArray.path) {
-          for (const auto& f : unpacked<kernels::OrientedFeature>(rows, kOrientedFeatureBytes)) {
-            while (feature >= state.feature_offsets[model + 1]) ++model;
-            state.check_feature(f, model);
-            ++feature;
-          }
+          state.check_features(rows, feature);
+          feature += static_cast<std::int64_t>(rows.size() / kOrientedFeatureBytes);
         } else if (path == kSamplePointArray.path || path == kLevelScaleArray.path) {
           state.check_floats(rows, path);
         }

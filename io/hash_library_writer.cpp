@@ -1,10 +1,10 @@
 #include "io/hash_library_writer.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
 #include "io/hash_library.hpp"
-#include "io/packed_normal.hpp"
 
 namespace semigeo::io {
 namespace {
@@ -27,32 +27,7 @@ ArrayShape chunked(ElementType type, int columns, std::int64_t rows, std::int64_
 }
 
 void add_text(std::string& texts, const std::string& text) {
-  if (text.find('\0') != std::string::npos) throw std::invalid_argument("a text holds NUL");
   texts.append(text).push_back('\0');
-}
-
-std::span<const std::byte> bytes_of(const auto& values) {
-  return std::as_bytes(std::span(values));
-}
-
-std::vector<PackedNormal> packed_normals(const std::vector<Eigen::Vector3f>& normals) {
-  std::vector<PackedNormal> packed;
-  packed.reserve(normals.size());
-  for (const Eigen::Vector3f& normal : normals) packed.push_back(pack_normal(normal));
-  return packed;
-}
-
-void check_model(const kernels::RecognitionModel& model, const std::string& last_name) {
-  if (model.name <= last_name) throw std::invalid_argument("names of models must ascend");
-  if (model.features.features.size() > kernels::kMostFeatures ||
-      model.features.level_scale.size() > kMostModelLevels)
-    throw std::invalid_argument(model.name + " has too many features or levels");
-  for (const kernels::OrientedFeature& feature : model.features.features)
-    if (feature.code >= kernels::kFeatureCodes ||
-        feature.level >= model.features.level_scale.size())
-      throw std::invalid_argument(model.name + " has a feature of no kind or level");
-  if (model.samples.points.size() != model.samples.normals.size())
-    throw std::invalid_argument(model.name + " has samples without normals");
 }
 
 }  // namespace
@@ -101,10 +76,12 @@ void HashLibraryWriter::write_block(const EncodedChunk& block) {
   ++blocks_;
 }
 
-void HashLibraryWriter::write_model(const kernels::RecognitionModel& model, std::int64_t triplets) {
+void HashLibraryWriter::write_model(const PackedModel& model, std::int64_t triplets) {
   if (blocks_ != postings_.shape().chunk_count())
     throw std::invalid_argument("models come after the postings");
-  check_model(model, last_name_);
+  if (model.name <= last_name_) throw std::invalid_argument("names of models must ascend");
+  if (const auto problem = problem_of(model))
+    throw std::invalid_argument("model " + model.name + " " + *problem);
   last_name_ = model.name;
   add_text(names_, model.name);
   add_text(digests_, model.digest);
@@ -112,15 +89,12 @@ void HashLibraryWriter::write_model(const kernels::RecognitionModel& model, std:
   centres_.insert(centres_.end(), model.centre.begin(), model.centre.end());
   origins_.insert(origins_.end(), model.origin.begin(), model.origin.end());
   diagonals_.push_back(model.diagonal);
-  spacings_.push_back(model.samples.spacing);
+  spacings_.push_back(model.sample_spacing);
   triplets_.push_back(triplets);
-  std::vector<std::byte> records;
-  append_packed(std::span<const kernels::OrientedFeature>(model.features.features),
-                kOrientedFeatureBytes, records);
-  features_.add(records);
-  level_scales_.add(bytes_of(model.features.level_scale));
-  sample_points_.add(bytes_of(model.samples.points));
-  sample_normals_.add(bytes_of(packed_normals(model.samples.normals)));
+  features_.add(model.features);
+  level_scales_.add(std::as_bytes(std::span(model.level_scales)));
+  sample_points_.add(model.sample_points);
+  sample_normals_.add(model.sample_normals);
 }
 
 void HashLibraryWriter::write_small(const std::string& path, const ArrayView& view) {

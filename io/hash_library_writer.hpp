@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/hash_library_format.hpp"
+#include "io/packed_model.hpp"
 
 namespace semigeo::io {
 
@@ -42,7 +43,7 @@ class HashLibraryWriter {
   void write_block(const EncodedChunk& block);
 
   /// The next model, after the last block; names ascend. `triplets`: how many postings it has.
-  void write_model(const kernels::RecognitionModel& model, std::int64_t triplets);
+  void write_model(const PackedModel& model, std::int64_t triplets);
 
   /// `cells`: as HashLibrary::cells. Returns the content digest.
   std::string finish(std::span<const std::uint64_t> cells);

@@ -24,6 +24,8 @@ semigeo_tests(io_library_tests
   SOURCES
     hash_library_test.cpp
     packed_normal_test.cpp
+    posting_partition_test.cpp
+    triplet_run_test.cpp
   LINK semigeo_sample_library)
 
 add_executable(write_sample_dataset write_sample_dataset.cpp)

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <functional>
 #include <set>
@@ -243,11 +244,113 @@ INSTANTIATE_TEST_SUITE_P(
         Contradiction{"CellsBegin", [](SampleLibrary& s) { s.cells[0] = 1; }, "not from posting 0"},
         Contradiction{"CellsEnd", [](SampleLibrary& s) { s.cells.back() += 1; },
                       "not from posting 0"},
-        Contradiction{"Counts", [](SampleLibrary& s) { s.triplets[1].pop_back(); }, "model 1 has"},
-        Contradiction{"NotFinite",
-                      [](SampleLibrary& s) { s.models[1].samples.points[3].y() = NAN; },
-                      "not finite"}),
+        Contradiction{"Counts", [](SampleLibrary& s) { s.triplets[1].pop_back(); }, "model 1 has"}),
     [](const auto& test) { return std::string(test.param.name); });
+
+/// Copies a library, its arrays changed by `change`, with a digest that is right again.
+void rewrite(const std::filesystem::path& from, const std::filesystem::path& to,
+             const std::function<void(const std::string&, std::vector<std::byte>&)>& change) {
+  const Hdf5File file = Hdf5File::open(from);
+  AtomicFile target(to);
+  DigestedFile copy(Hdf5File::create(target.temporary_path(), to));
+  for (const Hdf5Attribute& attribute : file.attributes("/"))
+    if (attribute.name != "digest" && attribute.name != "complete")
+      copy.write_attribute("/", attribute.name, attribute.value);
+  copy.create_group("/models");
+  for (const std::string group : {"/", "/models/"})
+    for (const Hdf5Link& link : file.links(group)) {
+      if (link.kind != Hdf5Link::Kind::array) continue;
+      const std::string path = group + link.name;
+      std::vector<std::byte> bytes = file.read_through_library(path);
+      change(path, bytes);
+      ArrayShape shape = file.shape_of(path);
+      shape.rows = static_cast<std::int64_t>(bytes.size()) / shape.row_bytes();
+      shape.chunk_rows = shape.rows;
+      copy.write_array(path, {shape, {encode_rows(shape, bytes)}});
+    }
+  complete_file(copy, target, [&](const std::filesystem::path& path) {
+    return Hdf5File::open(path).read_attribute_as<std::string>("/", "digest");
+  });
+  target.commit();
+}
+
+/// One value of an array of a library of three models that makes it nonsense.
+struct Nonsense {
+  const char* name;
+  const char* array;
+  std::size_t byte;
+  std::vector<std::uint8_t> bytes;
+  const char* message;  ///< at opening, or of both verify and whoever reads it
+};
+
+class Nonsensical : public HashLibraryTest, public testing::WithParamInterface<Nonsense> {};
+
+TEST_P(Nonsensical, IsRefused) {
+  const Nonsense& nonsense = GetParam();
+  const auto path = folder_ / "changed.h5";
+  rewrite(write(SampleLibrary(3)), path, [](const std::string&, auto&) {});
+  HashLibrary(path).verify();
+  rewrite(folder_ / "library.h5", path, [&](const std::string& array, auto& bytes) {
+    if (array == nonsense.array)
+      std::memcpy(bytes.data() + nonsense.byte, nonsense.bytes.data(), nonsense.bytes.size());
+  });
+  const auto read = [&] {
+    const HashLibrary library(path);
+    for (int i = 0; i < 3; ++i) library.read_model(i);
+    all_postings(library);
+  };
+  const std::string by_reading = message_of(read);
+  const std::string by_verifying = message_of([&] { HashLibrary(path).verify(); });
+  EXPECT_NE(by_reading.find(nonsense.message), std::string::npos) << by_reading;
+  EXPECT_NE(by_verifying.find(nonsense.message), std::string::npos) << by_verifying;
+}
+
+const std::vector<std::uint8_t> kNan = {0, 0, 0xc0, 0x7f};
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, Nonsensical,
+    testing::Values(
+        Nonsense{
+            "Code", "/models/features", 38 * 310 + 36, {8}, "model 1 has a feature of no kind"},
+        Nonsense{
+            "Level", "/models/features", 38 * 899 + 37, {3}, "model 2 has a feature of a level"},
+        Nonsense{"Position", "/models/features", 38 * 599 + 4, kNan, "model 1 has numbers that"},
+        Nonsense{"Sample", "/models/sample_points", 12 * 700 + 8, kNan, "not finite"},
+        Nonsense{"Scale", "/models/level_scales", 4 * 4, kNan, "not finite"},
+        Nonsense{"Diagonal", "/models/diagonals", 4, kNan, "model 1 has numbers that"},
+        Nonsense{"Centre", "/models/centres", 20, kNan, "model 1 has numbers that"},
+        Nonsense{"Spacing", "/models/sample_spacings", 8, kNan, "model 2 has numbers that"},
+        Nonsense{
+            "FeatureOffsets", "/models/feature_offsets", 8, {0xff, 0xff}, "model 1 ends before"},
+        Nonsense{"NegativeOffset", "/models/feature_offsets", 15, {0x80}, "model 0 ends before"},
+        Nonsense{"SampleOffsets", "/models/sample_offsets", 24, {0, 9}, "are not from row 0"},
+        Nonsense{"LevelOffsets", "/models/level_offsets", 0, {1}, "are not from row 0"},
+        Nonsense{"Names", "/models/names", 11, {'9'}, "do not ascend"},
+        Nonsense{"TwoNames", "/models/names", 3, {0}, "has not one text for each"},
+        Nonsense{"NoLastName", "/models/names", 38, {'x'}, "has not one text for each"},
+        Nonsense{"Model", "/postings", 26 * 9 + 16, {3}, "posting 9 is of model 3 of 3"},
+        Nonsense{"NegativeModel", "/postings", 26 * 9 + 19, {0x80}, "posting 9 is of model"},
+        Nonsense{"Corner", "/postings", 26 * 9 + 25, {0x12}, "posting 9 refers to feature"},
+        Nonsense{"Cells", "/cells", 8 * 100000, {0, 0, 0}, "ends before it begins"}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST_F(HashLibraryTest, ArraysMustFitOneAnother) {
+  const auto good = write(SampleLibrary(3));
+  for (const char* array :
+       {"/models/names", "/models/digests", "/models/length_units", "/models/centres",
+        "/models/origins", "/models/diagonals", "/models/sample_spacings", "/models/triplets",
+        "/models/feature_offsets", "/models/level_offsets", "/models/sample_offsets",
+        "/models/features", "/models/level_scales", "/models/sample_points",
+        "/models/sample_normals", "/postings", "/cells"}) {
+    const auto path = folder_ / "short.h5";
+    rewrite(good, path, [&](const std::string& name, auto& bytes) {
+      if (name == array)
+        bytes.resize(bytes.size() -
+                     static_cast<std::size_t>(Hdf5File::open(good).shape_of(name).row_bytes()));
+    });
+    EXPECT_THROW(HashLibrary{path}, Error) << array;
+  }
+}
 
 TEST_F(HashLibraryTest, WriterRefusesWrongUse) {
   const auto path = folder_ / "library.h5";
@@ -255,7 +358,7 @@ TEST_F(HashLibraryTest, WriterRefusesWrongUse) {
   const LibrarySizes sizes{.models = 2, .features = 600, .level_scales = 6, .samples = 1000};
   const auto write = [&](const std::vector<kernels::RecognitionModel>& models) {
     HashLibraryWriter writer(path, {}, sizes);
-    for (const kernels::RecognitionModel& m : models) writer.write_model(m, 0);
+    for (const kernels::RecognitionModel& m : models) writer.write_model(pack_model(m), 0);
     writer.finish(std::vector<std::uint64_t>(kernels::kTripletCells + 1));
   };
   const kernels::RecognitionModel next = tests::generated_model(2, {});
@@ -276,6 +379,9 @@ TEST_F(HashLibraryTest, WriterRefusesWrongUse) {
   bad = next;
   bad.features.features.pop_back();
   EXPECT_THROW(write({model, bad}), std::invalid_argument) << "fewer rows than said";
+  bad = next;
+  bad.samples.points[7].y() = NAN;
+  EXPECT_THROW(write({model, bad}), std::invalid_argument) << "not finite";
   bad = next;
   bad.name.push_back('\0');
   EXPECT_THROW(write({model, bad}), std::invalid_argument) << "NUL";

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "io/hash_library_writer.hpp"
+#include "io/packed_rows.hpp"
 
 namespace semigeo::tests {
 
@@ -38,15 +39,15 @@ std::string write_library(const std::filesystem::path& path, const SampleLibrary
   }
   io::HashLibraryWriter writer(path, {.parameters_json = R"({"levels":3})", .job_key = "key"},
                                sizes);
-  std::vector<std::byte> rows;
-  io::append_packed(std::span(sample.postings), io::kPostingBytes, rows);
+  const std::vector<std::byte> rows = io::packed(std::span(sample.postings), io::kPostingBytes);
   const io::ArrayShape& shape = writer.posting_shape();
   const auto block = static_cast<std::size_t>(shape.chunk_bytes());
   for (std::size_t at = 0; at < rows.size(); at += block)
     writer.write_block(
         io::encode_rows(shape, std::span(rows).subspan(at, std::min(block, rows.size() - at))));
   for (std::size_t i = 0; i < sample.models.size(); ++i)
-    writer.write_model(sample.models[i], static_cast<std::int64_t>(sample.triplets[i].size()));
+    writer.write_model(io::pack_model(sample.models[i]),
+                       static_cast<std::int64_t>(sample.triplets[i].size()));
   return writer.finish(sample.cells);
 }
 
