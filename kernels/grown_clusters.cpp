@@ -18,14 +18,19 @@ struct Parameters {
 /// A growing cluster: sums of its members' parameters.
 class Cluster {
  public:
-  explicit Cluster(const Parameters& first) : centre_(first) { add(first); }
+  Cluster(const Parameters& first, double diagonal, const ClusterOptions& options)
+      : centre_(first),
+        log_scale_reach_(options.log_scale),
+        reach_(options.distance * diagonal),
+        least_cosine_(std::cos(options.angle / 2)) {
+    add(first);
+  }
 
-  bool near(const Parameters& p, double diagonal, const ClusterOptions& options) const {
-    if (std::abs(p.log_scale - centre_.log_scale) > options.log_scale) return false;
-    const double reach = options.distance * diagonal * std::exp(centre_.log_scale);
-    if ((p.place - centre_.place).squaredNorm() > reach * reach) return false;
-    // Half the angle between two rotations has this cosine.
-    return std::abs(p.rotation.dot(centre_.rotation)) >= std::cos(options.angle / 2);
+  bool near(const Parameters& p) const {
+    return std::abs(p.log_scale - centre_.log_scale) <= log_scale_reach_ &&
+           (p.place - centre_.place).squaredNorm() <= squared_reach_ &&
+           // Half the angle between two rotations has this cosine.
+           std::abs(p.rotation.dot(centre_.rotation)) >= least_cosine_;
   }
 
   void add(const Parameters& p) {
@@ -38,6 +43,8 @@ class Cluster {
     centre_.log_scale = log_scale_ / count;
     centre_.place = place_ / count;
     centre_.rotation.coeffs() = rotation_.normalized();
+    const double reach = reach_ * std::exp(centre_.log_scale);
+    squared_reach_ = reach * reach;
   }
 
   std::int64_t members() const { return members_; }
@@ -51,6 +58,10 @@ class Cluster {
 
  private:
   Parameters centre_;
+  double log_scale_reach_;
+  double reach_;  ///< at scale 1
+  double squared_reach_ = 0;
+  double least_cosine_;
   std::int64_t members_ = 0;
   double log_scale_ = 0;
   Eigen::Vector3d place_ = Eigen::Vector3d::Zero();
@@ -68,13 +79,13 @@ GrownCluster largest_grown_cluster(std::span<const Similarity> poses, const Eige
   GrownCluster largest;
   // A cluster cannot become larger than what is free.
   while (static_cast<std::int64_t>(free.size()) > largest.members) {
-    Cluster cluster(free.front());
+    Cluster cluster(free.front(), diagonal, options);
     free.erase(free.begin());
     for (std::size_t before = free.size() + 1; free.size() < before;) {
       before = free.size();
       std::size_t kept = 0;
       for (const Parameters& p : free)
-        if (cluster.near(p, diagonal, options))
+        if (cluster.near(p))
           cluster.add(p);
         else
           free[kept++] = p;

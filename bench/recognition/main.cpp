@@ -13,6 +13,7 @@
 #include "bench/recognition/experiments.hpp"
 #include "bench/recognition/report.hpp"
 #include "bench/recognition/scenes.hpp"
+#include "bench/recognition/thesis_tables.hpp"
 #include "bench/support/examples_first.hpp"
 #include "io/atomic_file.hpp"
 #include "jobs/stages/recognise_scene.hpp"
@@ -33,6 +34,7 @@ struct Options {
   ExperimentOptions experiments;
   std::string method = "own";
   jobs::ThesisRecognitionOptions thesis;
+  bool thesis_tables = false;
   bool short_run = false;
   bool verbose = false;
   fs::path json;
@@ -81,7 +83,8 @@ void tell(const Outcome& o) {
 
 int run(Options options, const std::vector<std::string>& arguments) {
   if (options.short_run) shorten(options);
-  if (options.method == "thesis") options.experiments.parameters.torsion = true;
+  if (options.method == "thesis" || options.thesis_tables)
+    options.experiments.parameters.torsion = true;
   engine::Workers workers(options.threads);
   engine::Observer observer;
   const engine::RunContext context{workers, observer, {}};
@@ -93,6 +96,14 @@ int run(Options options, const std::vector<std::string>& arguments) {
       std::fprintf(stderr, "recognition: %s: skipped: %s\n", model.path.c_str(), model.why.c_str());
   if (models.empty()) throw std::runtime_error("no closed mesh among the models");
   const tests::TemporaryFolder folder;
+  if (options.thesis_tables) {
+    const ThesisTables tables =
+        thesis_tables(models, options.experiments.parameters, options.thesis,
+                      options.experiments.first_seed, folder.path(), context);
+    print(tables);
+    if (!options.json.empty()) io::write_file_atomically(options.json, json(tables));
+    return kDone;
+  }
   const std::vector<Outcome> outcomes = run_experiments(
       models, method_of(options, context), options.experiments, folder.path(),
       options.verbose ? tell : [](const Outcome&) {}, context);
@@ -138,6 +149,8 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--strongest", options.thesis.hash.strongest, "thesis: features of each kind")
       ->check(CLI::Range(3, 1000));
   app.add_option("--level", options.thesis.level, "thesis: of the features");
+  app.add_flag("--thesis-tables", options.thesis_tables,
+               "Instead: tables 6.1 to 6.6 of the thesis, with these models");
   app.add_flag("--short", options.short_run, "Four small models, a few kinds, one seed");
   app.add_option("--json", options.json, "Every scene");
   app.add_flag("--verbose", options.verbose, "Each scene as it is done, on stderr");
@@ -149,6 +162,8 @@ std::string footer() {
       "Examples:\n"
       "  recognition --models scans --kinds A,B,C --verbose\n"
       "  recognition --models a.ply b.obj c.stl --seeds 5 --json rates.json\n"
+      "  recognition --models scans --method thesis --kinds A,C\n"
+      "  recognition --models scans --most-models 12 --thesis-tables\n"
       "\n"
       "Kinds of scenes, each rotated, scaled and moved as well:\n";
   for (const SceneKind& kind : scene_kinds())
