@@ -122,15 +122,6 @@ std::vector<ThesisTriplet> thesis_triplets(const OrientedFeatures& features,
   return result;
 }
 
-bool agree(const ThesisTriplet& a, const ThesisTriplet& b, const ThesisOptions& options) {
-  const auto near = [](float x, float y, double tolerance) { return std::abs(x - y) <= tolerance; };
-  return near(a.indexed, b.indexed, options.indexed) && a.strongest == b.strongest &&
-         near(a.length_ratios[0], b.length_ratios[0], options.length_ratio) &&
-         near(a.length_ratios[1], b.length_ratios[1], options.length_ratio) &&
-         near(a.feature_ratios[0], b.feature_ratios[0], options.feature_ratio) &&
-         near(a.feature_ratios[1], b.feature_ratios[1], options.feature_ratio);
-}
-
 ThesisTable::ThesisTable(std::vector<Entry> entries, const ThesisOptions& options)
     : options_(options),
       address_(static_cast<float>(options.address)),

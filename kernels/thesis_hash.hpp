@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -53,7 +54,14 @@ std::vector<ThesisTriplet> thesis_triplets(const OrientedFeatures& features,
 
 /// Whether V and the four ratios agree. Differs: the thesis only says that individual features are
 /// matched as well; here that are the ratios, corner by corner.
-bool agree(const ThesisTriplet& a, const ThesisTriplet& b, const ThesisOptions& options);
+inline bool agree(const ThesisTriplet& a, const ThesisTriplet& b, const ThesisOptions& options) {
+  const auto near = [](float x, float y, double tolerance) { return std::abs(x - y) <= tolerance; };
+  return near(a.indexed, b.indexed, options.indexed) && a.strongest == b.strongest &&
+         near(a.length_ratios[0], b.length_ratios[0], options.length_ratio) &&
+         near(a.length_ratios[1], b.length_ratios[1], options.length_ratio) &&
+         near(a.feature_ratios[0], b.feature_ratios[0], options.feature_ratio) &&
+         near(a.feature_ratios[1], b.feature_ratios[1], options.feature_ratio);
+}
 
 /// The hash table of one kind of features: triplets of all models, addressed by A in steps of its
 /// tolerance.
@@ -73,7 +81,7 @@ class ThesisTable {
   /// entries only. May be called by several threads at once.
   template <typename Visit>
   void for_matches(const ThesisTriplet& triplet, const Visit& visit) const {
-    const std::size_t cell = cell_of(triplet.address);
+    const std::size_t cell = cell_of(triplet.address);  // and those next to it
     const std::size_t first = first_[cell == 0 ? 0 : cell - 1];
     const std::size_t end = first_[std::min(cell + 2, first_.size() - 1)];
     for (std::size_t i = first; i < end; ++i) {

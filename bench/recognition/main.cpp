@@ -95,6 +95,7 @@ int run(Options options, const std::vector<std::string>& arguments) {
     for (const SkippedModel& model : skipped)
       std::fprintf(stderr, "recognition: %s: skipped: %s\n", model.path.c_str(), model.why.c_str());
   if (models.empty()) throw std::runtime_error("no closed mesh among the models");
+  const std::size_t known = models.size();  // the range scan may add one
   const tests::TemporaryFolder folder;
   if (options.thesis_tables) {
     const ThesisTables tables =
@@ -107,7 +108,8 @@ int run(Options options, const std::vector<std::string>& arguments) {
   const std::vector<Outcome> outcomes = run_experiments(
       models, method_of(options, context), options.experiments, folder.path(),
       options.verbose ? tell : [](const Outcome&) {}, context);
-  std::printf("%zu models\n", models.size());
+  std::printf("%zu models; %zu files left out%s\n", known, skipped.size(),
+              skipped.empty() || options.verbose ? "" : " (--verbose says why)");
   print(outcomes);
   print_misses(outcomes);
   std::vector<std::string> names;
@@ -123,7 +125,8 @@ void add_options(CLI::App& app, Options& options) {
   e.kinds = kinds;
   options.models.places = {SEMIGEO_REAL_SCANS};
   e.scan_folder = SEMIGEO_REAL_SCANS;
-  app.add_option("--models", options.models.places, "Files and folders; closed meshes are used");
+  app.add_option("--models", options.models.places, "Files and folders; closed meshes are used")
+      ->check(CLI::ExistingPath);
   app.add_option("--model-vertices", options.models.most_vertices, "At most; 0: as they are")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{100'000'000}));
   app.add_option("--most-models", options.models.most_models, "0: all")
