@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 namespace semigeo::kernels {
@@ -56,15 +55,17 @@ TEST(LargestGrownCluster, KeepsApartWhatDiffersInOneParameterOnly) {
   EXPECT_EQ(together(pose(1, 0.31, kOrigin)), 1);
 }
 
-TEST(LargestGrownCluster, CountsHalfTurnsAsOneRotation) {
-  // Quaternions of turns just below and above a half turn have opposite signs.
-  const double pi = std::numbers::pi;
-  EXPECT_EQ(
-      largest({pose(1, pi - 0.05, kOrigin), pose(1, pi + 0.05, kOrigin), pose(1, pi, kOrigin)})
-          .members,
-      3);
-  const GrownCluster cluster = largest({pose(1, pi - 0.05, kOrigin), pose(1, -pi + 0.05, kOrigin)});
-  EXPECT_LT((cluster.pose.rotation - pose(1, pi, kOrigin).rotation).norm(), 1e-9);
+TEST(LargestGrownCluster, TakesAQuaternionAndItsNegativeForOneRotation) {
+  // About whatever axis and angle the one becomes the other, it is on this way.
+  for (const Eigen::Vector3d& axis : {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, 0, -1),
+                                      Eigen::Vector3d(-1, 0.1, 0.2).normalized()})
+    for (int step = 0; step < 126; ++step) {
+      const double angle = 0.05 * step;
+      const GrownCluster cluster =
+          largest({pose(1, angle - 0.05, kOrigin, axis), pose(1, angle + 0.05, kOrigin, axis)});
+      EXPECT_EQ(cluster.members, 2);
+      EXPECT_LT((cluster.pose.rotation - pose(1, angle, kOrigin, axis).rotation).norm(), 1e-9);
+    }
 }
 
 TEST(LargestGrownCluster, GrowsWithItsCentre) {
