@@ -103,12 +103,18 @@ class BuildTest(LibraryTest):
         self.assertEqual((status["state"], status["left"], status["skipped"]), ("ended", 0, 1))
 
     def test_a_job_that_crashes_costs_its_model_only(self):
+        self.run_library()
+        # The library must not have the model of the scan that was.
+        write_ply(self.scans / "1.ply", bumpy(17))
         for faults, code in (("triplets 1.ply=crash", 1), ("", 0)):
             process = self.semigeo("run", self.scans, "-o", self.archive, "--library", *LEVELS, "--json", code=code,
                                    env=os.environ | {"SEMIGEO_TEST_FAULTS": faults})
             document = json.loads(process.stdout)
             self.assertEqual(document["library"]["missing"], ["1.ply"] if faults else [])
-        self.assertEqual(self.names(self.library), [f"{i}.ply" for i in range(4)])
+            self.assertEqual(self.names(self.library), [f"{i}.ply" for i in range(4) if i != 1 or not faults])
+        fresh = self.folder / "fresh"
+        self.run_library(archive=fresh)
+        self.assertTrue(self.library.read_bytes() == (fresh / "library.h5").read_bytes())
 
     def test_a_partition_that_fails_costs_the_library(self):
         process = self.semigeo("run", self.scans, "-o", self.archive, "--library", *LEVELS, code=1,
