@@ -34,14 +34,23 @@ void BinaryWriter::data(std::span<const std::byte> bytes) {
   file_.text({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-void BinaryWriter::finish(const HeadWriter& head) {
+void BinaryWriter::write_end(const HeadWriter& head) {
   HeadWriter trailer;
   trailer.number<std::uint64_t>(head.bytes().size());
   trailer.number(hash_of(head.bytes()));
   trailer.number(hash_of(trailer.bytes()));
   file_.text(head.bytes());
   file_.text(trailer.bytes());
+}
+
+void BinaryWriter::finish(const HeadWriter& head) {
+  write_end(head);
   file_.commit();
+}
+
+void BinaryWriter::finish_unsynced(const HeadWriter& head) {
+  write_end(head);
+  file_.commit_unsynced();
 }
 
 BinaryFile::BinaryFile(const std::filesystem::path& path, const BinaryFormat& format)

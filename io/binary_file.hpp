@@ -52,8 +52,12 @@ class BinaryWriter {
   void data(std::span<const std::byte> bytes);
   /// Ends the file, which then appears under its name.
   void finish(const HeadWriter& head);
+  /// As AtomicFile::commit_unsynced.
+  void finish_unsynced(const HeadWriter& head);
 
  private:
+  void write_end(const HeadWriter& head);
+
   OutputFile file_;
 };
 

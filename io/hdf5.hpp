@@ -156,8 +156,7 @@ class Hdf5File::Growing {
   const ArrayShape& shape() const { return shape_; }
   const std::string& path() const { return path_; }
   void write_chunk(const EncodedChunk& chunk);  ///< the next
-  /// To be called after the last chunk.
-  void close();
+  void close();                                 ///< after the last chunk
 
  private:
   friend class Hdf5File;

@@ -96,7 +96,7 @@ void write_triplet_run(const std::filesystem::path& path, const std::string& job
   BinaryWriter file(path, kRunFormat);
   file.data(std::as_bytes(std::span(rows)));
   file.data(tables);
-  file.finish(head);
+  file.finish_unsynced(head);
 }
 
 TripletRun::TripletRun(const std::filesystem::path& path) : file_(path, kRunFormat) {
@@ -190,7 +190,10 @@ PackedModel TripletRun::read_packed_model() const {
 }
 
 std::string triplet_run_key(const std::filesystem::path& path) {
-  return TripletRun(path).job_key();
+  const TripletRun run(path);
+  run.read_triplets();
+  run.read_packed_model();
+  return run.job_key();
 }
 
 }  // namespace semigeo::io

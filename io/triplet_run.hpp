@@ -14,7 +14,8 @@
 
 namespace semigeo::io {
 
-/// Writes a model and its triplets as one file (io/LIBRARY.md), whole or not at all; equal content,
+/// Writes a model and its triplets as one file (io/LIBRARY.md), whole or not at all, unless the
+/// power is cut meanwhile: it is not forced to the disk, as there are thousands. Equal content,
 /// equal bytes. std::invalid_argument if the model is unsound or the triplets are not sorted by
 /// cell, then corners, none twice, or refer to features that it does not have.
 void write_triplet_run(const std::filesystem::path& path, const std::string& job_key,
@@ -59,8 +60,8 @@ class TripletRun {
   std::uint64_t model_hash_ = 0;
 };
 
-/// The key of the job that made a run; Error if the file is not a whole run of this version. Reads
-/// a few kB.
+/// The key of the job that made a run; Error if the file is not a whole run of this version, or
+/// damaged in any place: it reads all of it.
 std::string triplet_run_key(const std::filesystem::path& path);
 
 }  // namespace semigeo::io

@@ -3,8 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <optional>
+#include <cstring>
 #include <utility>
 
 namespace semigeo::kernels {
@@ -78,6 +77,34 @@ Vector3f normal_of(const Invariants& invariants, int corner) {
   return {a, b, negative ? -rest : rest};
 }
 
+/// Sixteen bytes in one register, as GCC and Clang have them on every machine.
+using SixteenBytes = std::uint8_t __attribute__((vector_size(kInvariants)));
+
+SixteenBytes bytes_of(const Invariants& invariants) {
+  SixteenBytes bytes;
+  std::memcpy(&bytes, invariants.data(), sizeof bytes);
+  return bytes;
+}
+
+bool within_tolerances(SixteenBytes a, SixteenBytes b) {
+  const SixteenBytes larger = a > b ? a : b;
+  const SixteenBytes smaller = a > b ? b : a;
+  const auto beyond = (larger - smaller) > bytes_of(kTolerances);  // bytes of ones where so
+  std::array<std::uint64_t, 2> halves;
+  std::memcpy(halves.data(), &beyond, sizeof halves);
+  return (halves[0] | halves[1]) == 0;
+}
+
+bool same_normals(const Invariants& a, const Invariants& b) {
+  for (int corner = 0; corner < 3; ++corner)
+    if (normal_of(a, corner).dot(normal_of(b, corner)) < kCosNormalTolerance) return false;
+  return true;
+}
+
+std::uint64_t packed(const Corners& corners) {
+  return std::uint64_t{corners[0]} << 32 | std::uint64_t{corners[1]} << 16 | corners[2];
+}
+
 /// What of a triplet belongs to one feature, whatever its triangle is.
 struct Corner {
   Vector3f position;
@@ -103,7 +130,9 @@ class LevelTriplets {
       corners_.push_back({f.position, f.normal, curvature_byte(f.scale_free_gaussian),
                           curvature_byte(f.scale_free_mean), f.code});
     }
-    for (const Corners& triangle : triangles()) enter(triangle);
+    for (const std::uint64_t triangle : triangles())
+      enter({static_cast<std::uint16_t>(triangle >> 32), static_cast<std::uint16_t>(triangle >> 16),
+             static_cast<std::uint16_t>(triangle)});
   }
 
  private:
@@ -125,9 +154,9 @@ class LevelTriplets {
     near_.resize(count);
   }
 
-  /// Each once, its corners ascending.
-  std::vector<Corners> triangles() {
-    std::vector<Corners> found;
+  /// Each once, its corners ascending. Packed: numbers are sorted faster than arrays.
+  std::vector<std::uint64_t> triangles() {
+    std::vector<std::uint64_t> found;
     const double nearest = options_.nearest * sigma_;
     for (std::size_t i = 0; i < corners_.size(); ++i) {
       find_neighbours(i);
@@ -139,7 +168,7 @@ class LevelTriplets {
             continue;
           Corners triangle = {static_cast<std::uint16_t>(i), j, k};
           std::ranges::sort(triangle);
-          found.push_back(triangle);
+          found.push_back(packed(triangle));
         }
     }
     std::ranges::sort(found);
@@ -255,16 +284,17 @@ std::vector<std::uint32_t> cells_around(std::uint32_t cell) {
 }
 
 bool compatible(const Invariants& a, const Invariants& b) {
-  // Without a branch, so that the compiler makes one comparison of it.
-  std::uint8_t beyond = 0;
-  for (int i = 0; i < kInvariants; ++i) {
-    const int difference = std::max(a[i], b[i]) - std::min(a[i], b[i]);
-    beyond |= static_cast<std::uint8_t>(difference > kTolerances[i] ? 1 : 0);
+  return within_tolerances(bytes_of(a), bytes_of(b)) && same_normals(a, b);
+}
+
+void find_compatible(const Invariants& wanted, std::span<const Posting> postings,
+                     std::vector<std::uint32_t>& found) {
+  const SixteenBytes bytes = bytes_of(wanted);
+  for (std::uint32_t i = 0; i < postings.size(); ++i) {
+    const Invariants& other = postings[i].invariants;
+    if (within_tolerances(bytes, bytes_of(other)) && same_normals(wanted, other))
+      found.push_back(i);
   }
-  if (beyond != 0) return false;
-  for (int corner = 0; corner < 3; ++corner)
-    if (normal_of(a, corner).dot(normal_of(b, corner)) < kCosNormalTolerance) return false;
-  return true;
 }
 
 }  // namespace semigeo::kernels

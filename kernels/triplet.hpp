@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "kernels/features.hpp"
@@ -81,8 +82,20 @@ std::vector<std::uint32_t> cells_around(std::uint32_t cell);
 
 /// Whether two triplets of cells next to each other may be the same one, seen twice: side ratios
 /// within 0.09, log scale within 0.35, curvatures at each corner within 0.25 + 0.35 of their size,
-/// normals within 30 degrees under the rotation that the triangles fix. Bytes are compared 16 at a
-/// time; only what passes is looked at again.
+/// normals within 30 degrees under the rotation that the triangles fix.
 bool compatible(const Invariants& a, const Invariants& b);
+
+/// A triplet of a library, whose cell the library's index tells.
+struct Posting {
+  Invariants invariants = {};
+  std::uint32_t model = 0;
+  std::array<std::uint16_t, 3> corners = {};
+  friend bool operator==(const Posting&, const Posting&) = default;
+};
+
+/// Appends to `found` which of the postings are compatible, ascending. Bytes are compared 16 at a
+/// time, 1 ns a posting; only what passes is looked at again.
+void find_compatible(const Invariants& wanted, std::span<const Posting> postings,
+                     std::vector<std::uint32_t>& found);
 
 }  // namespace semigeo::kernels

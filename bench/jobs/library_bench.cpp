@@ -66,7 +66,7 @@ void library(benchmark::State& state) {
                        .parameters_json = "{}",
                        .output = folder / "library.h5",
                        .key = "key",
-                       .memory_bytes = std::int64_t{256} << 20};
+                       .memory_bytes = std::int64_t{512} << 20};
   {
     const engine::Stopwatch stopwatch(times, "runs");
     job.runs = write_runs(folder.path(), model_count(), workers);
@@ -97,6 +97,26 @@ void library(benchmark::State& state) {
 }
 BENCHMARK(library)->ArgName("threads")->Arg(1)->Arg(2)->Iterations(1)->UseRealTime()->Unit(
     benchmark::kMillisecond);
+
+/// A run written, and read.
+void triplet_run(benchmark::State& state) {
+  const tests::TemporaryFolder folder;
+  const kernels::RecognitionModel model = tests::generated_model(1, kUsual);
+  const auto triplets = tests::generated_triplets(1, model, kUsual);
+  io::write_triplet_run(folder / "run", "key", model, triplets);
+  for (auto _ : state) {
+    if (state.range(0) == 0) {
+      io::write_triplet_run(folder / "run", "key", model, triplets);
+    } else if (state.range(0) == 1) {
+      benchmark::DoNotOptimize(io::TripletRun(folder / "run"));
+    } else {
+      benchmark::DoNotOptimize(io::triplet_run_key(folder / "run"));
+    }
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(triplets.size()));
+  state.SetLabel(state.range(0) == 0 ? "written" : state.range(0) == 1 ? "opened" : "read");
+}
+BENCHMARK(triplet_run)->DenseRange(0, 2)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace semigeo::bench

@@ -13,9 +13,11 @@
 #include "bench/recognition/experiments.hpp"
 #include "bench/recognition/report.hpp"
 #include "bench/recognition/scenes.hpp"
+#include "bench/recognition/thesis_tables.hpp"
 #include "bench/support/examples_first.hpp"
 #include "io/atomic_file.hpp"
 #include "jobs/stages/recognise_scene.hpp"
+#include "jobs/stages/thesis_recognition.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace semigeo::recognition {
@@ -30,6 +32,9 @@ constexpr int kUsage = 2;
 struct Options {
   ModelChoice models;
   ExperimentOptions experiments;
+  std::string method = "own";
+  jobs::ThesisRecognitionOptions thesis;
+  bool thesis_tables = false;
   bool short_run = false;
   bool verbose = false;
   fs::path json;
@@ -53,6 +58,14 @@ void shorten(Options& options) {
 }
 
 Method method_of(const Options& options, const engine::RunContext& context) {
+  if (options.method == "thesis")
+    return [&options, &context](const io::HashLibrary& library) -> Recogniser {
+      const auto database =
+          std::make_shared<jobs::ThesisDatabase>(library, options.thesis, context);
+      return [&options, database](const kernels::RecognitionModel& scene) {
+        return jobs::ranked(database->scores(scene), options.experiments.recognition);
+      };
+    };
   return [&options, &context](const io::HashLibrary& library) -> Recogniser {
     return [&](const kernels::RecognitionModel& scene) {
       return jobs::recognise_scene(library, scene, options.experiments.recognition, context);
@@ -70,6 +83,8 @@ void tell(const Outcome& o) {
 
 int run(Options options, const std::vector<std::string>& arguments) {
   if (options.short_run) shorten(options);
+  if (options.method == "thesis" || options.thesis_tables)
+    options.experiments.parameters.torsion = true;
   engine::Workers workers(options.threads);
   engine::Observer observer;
   const engine::RunContext context{workers, observer, {}};
@@ -80,11 +95,21 @@ int run(Options options, const std::vector<std::string>& arguments) {
     for (const SkippedModel& model : skipped)
       std::fprintf(stderr, "recognition: %s: skipped: %s\n", model.path.c_str(), model.why.c_str());
   if (models.empty()) throw std::runtime_error("no closed mesh among the models");
+  const std::size_t known = models.size();  // the range scan may add one
   const tests::TemporaryFolder folder;
+  if (options.thesis_tables) {
+    const ThesisTables tables =
+        thesis_tables(models, options.experiments.parameters, options.thesis,
+                      options.experiments.first_seed, folder.path(), context);
+    print(tables);
+    if (!options.json.empty()) io::write_file_atomically(options.json, json(tables));
+    return kDone;
+  }
   const std::vector<Outcome> outcomes = run_experiments(
       models, method_of(options, context), options.experiments, folder.path(),
       options.verbose ? tell : [](const Outcome&) {}, context);
-  std::printf("%zu models\n", models.size());
+  std::printf("%zu models; %zu files left out%s\n", known, skipped.size(),
+              skipped.empty() || options.verbose ? "" : " (--verbose says why)");
   print(outcomes);
   print_misses(outcomes);
   std::vector<std::string> names;
@@ -100,7 +125,8 @@ void add_options(CLI::App& app, Options& options) {
   e.kinds = kinds;
   options.models.places = {SEMIGEO_REAL_SCANS};
   e.scan_folder = SEMIGEO_REAL_SCANS;
-  app.add_option("--models", options.models.places, "Files and folders; closed meshes are used");
+  app.add_option("--models", options.models.places, "Files and folders; closed meshes are used")
+      ->check(CLI::ExistingPath);
   app.add_option("--model-vertices", options.models.most_vertices, "At most; 0: as they are")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{100'000'000}));
   app.add_option("--most-models", options.models.most_models, "0: all")
@@ -121,6 +147,13 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--samples", e.parameters.samples, "Of a surface, at most")
       ->check(CLI::Range(10, 1'000'000));
   app.add_option("--min-score", e.recognition.min_score, "Below it nothing is reported");
+  app.add_option("--method", options.method, "thesis: all triplets, votes, clusters of poses")
+      ->check(CLI::IsMember({"own", "thesis"}));
+  app.add_option("--strongest", options.thesis.hash.strongest, "thesis: features of each kind")
+      ->check(CLI::Range(3, 1000));
+  app.add_option("--level", options.thesis.level, "thesis: of the features");
+  app.add_flag("--thesis-tables", options.thesis_tables,
+               "Instead: tables 6.1 to 6.6 of the thesis, with these models");
   app.add_flag("--short", options.short_run, "Four small models, a few kinds, one seed");
   app.add_option("--json", options.json, "Every scene");
   app.add_flag("--verbose", options.verbose, "Each scene as it is done, on stderr");
@@ -132,6 +165,8 @@ std::string footer() {
       "Examples:\n"
       "  recognition --models scans --kinds A,B,C --verbose\n"
       "  recognition --models a.ply b.obj c.stl --seeds 5 --json rates.json\n"
+      "  recognition --models scans --method thesis --kinds A,C\n"
+      "  recognition --models scans --most-models 12 --thesis-tables\n"
       "\n"
       "Kinds of scenes, each rotated, scaled and moved as well:\n";
   for (const SceneKind& kind : scene_kinds())

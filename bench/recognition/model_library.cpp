@@ -1,75 +1,52 @@
 #include "bench/recognition/model_library.hpp"
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdio>
-#include <span>
-#include <tuple>
+#include <string>
 #include <utility>
 
-#include "io/hash_library_writer.hpp"
+#include "io/triplet_run.hpp"
+#include "jobs/stages/library_job.hpp"
+#include "jobs/stages/partition_job.hpp"
+#include "kernels/triplet.hpp"
 
 namespace semigeo::recognition {
 
 ModelLibraries::ModelLibraries(ModelSpan models, const jobs::RecognitionParameters& parameters,
                                std::filesystem::path folder, const engine::RunContext& context)
-    : folder_(std::move(folder)) {
+    : folder_(std::move(folder)), context_(context) {
   for (std::size_t i = 0; i < models.size(); ++i) {
-    Entry entry{.index = i,
-                .model = jobs::recognition_model(models[i]->built, parameters, context),
-                .triplets = {}};
-    entry.model.name = models[i]->name;
+    kernels::RecognitionModel model =
+        jobs::recognition_model(models[i]->built, parameters, context);
+    model.name = models[i]->name;
     // There is no dataset that it could be the digest of.
     char digest[33];
     std::snprintf(digest, sizeof digest, "%032zx", i);
-    entry.model.digest = digest;
-    entry.triplets = kernels::local_triplets(entry.model.features, {});
-    entries_.push_back(std::move(entry));
+    model.digest = digest;
+    const Run run{model.name, i, folder_ / (std::to_string(i) + ".run")};
+    io::write_triplet_run(run.path, "bench", model, kernels::local_triplets(model.features, {}));
+    runs_.push_back(run);
   }
-  std::ranges::sort(entries_, {}, [](const Entry& entry) { return entry.model.name; });
+  std::ranges::sort(runs_, {}, &Run::name);
 }
 
 std::unique_ptr<io::HashLibrary> ModelLibraries::without(
     const std::vector<std::size_t>& left_out) const {
-  std::vector<const Entry*> used;
-  for (const Entry& entry : entries_)
-    if (std::ranges::count(left_out, entry.index) == 0) used.push_back(&entry);
-  std::vector<std::pair<std::uint32_t, kernels::Posting>> found;
-  io::LibrarySizes sizes{.models = std::ssize(used)};
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    sizes.features += std::ssize(used[i]->model.features.features);
-    sizes.level_scales += std::ssize(used[i]->model.features.level_scale);
-    sizes.samples += std::ssize(used[i]->model.samples.points);
-    for (const kernels::Triplet& t : used[i]->triplets)
-      found.push_back({t.cell,
-                       {.invariants = t.invariants,
-                        .model = static_cast<std::uint32_t>(i),
-                        .corners = t.corners}});
+  jobs::LibraryJob library{.runs = {},
+                           .partitions = {},
+                           .parameters_json = "{}",
+                           .output = folder_ / "library.h5",
+                           .key = "bench"};
+  for (const Run& run : runs_)
+    if (std::ranges::count(left_out, run.model) == 0) library.runs.push_back(run.path);
+  for (const io::ShapeRange& shapes : jobs::partition_shapes(std::ssize(library.runs))) {
+    const auto path = folder_ / (std::to_string(shapes.first) + ".partition");
+    jobs::run_partition_job(
+        {.runs = library.runs, .shapes = shapes, .output = path, .key = "bench"}, context_);
+    library.partitions.push_back(path);
   }
-  std::ranges::sort(found, {}, [](const auto& entry) {
-    return std::tie(entry.first, entry.second.model, entry.second.corners);
-  });
-  sizes.postings = std::ssize(found);
-  std::vector<std::uint64_t> cells(kernels::kTripletCells + 1);
-  std::vector<kernels::Posting> postings;
-  postings.reserve(found.size());
-  for (const auto& [cell, posting] : found) {
-    postings.push_back(posting);
-    ++cells[cell + 1];
-  }
-  for (std::size_t i = 1; i < cells.size(); ++i) cells[i] += cells[i - 1];
-
-  const std::filesystem::path path = folder_ / "library.h5";
-  io::HashLibraryWriter writer(path, {.parameters_json = "{}", .job_key = "bench"}, sizes);
-  std::vector<std::byte> rows;
-  io::append_packed(std::span<const kernels::Posting>(postings), io::kPostingBytes, rows);
-  const auto block = static_cast<std::size_t>(writer.posting_shape().chunk_bytes());
-  for (std::size_t at = 0; at < rows.size(); at += block)
-    writer.write_block(io::encode_rows(
-        writer.posting_shape(), std::span(rows).subspan(at, std::min(block, rows.size() - at))));
-  for (const Entry* entry : used) writer.write_model(entry->model, std::ssize(entry->triplets));
-  writer.finish(cells);
-  return std::make_unique<io::HashLibrary>(path);
+  jobs::run_library_job(library, context_);
+  return std::make_unique<io::HashLibrary>(library.output);
 }
 
 }  // namespace semigeo::recognition

@@ -2,19 +2,18 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "bench/recognition/bench_model.hpp"
 #include "engine/run_context.hpp"
 #include "io/hash_library.hpp"
 #include "jobs/stages/recognition_features.hpp"
-#include "kernels/recognition_model.hpp"
-#include "kernels/triplet.hpp"
 
 namespace semigeo::recognition {
 
-/// Libraries of the same models, each without some of them. Features and triplets
-/// are computed once.
+/// Libraries of the same models, each without some of them, made as the program makes them.
+/// Features and triplets are computed once.
 class ModelLibraries {
  public:
   /// Writes into `folder`, which must exist and stay. Throws io::Error.
@@ -25,13 +24,14 @@ class ModelLibraries {
   std::unique_ptr<io::HashLibrary> without(const std::vector<std::size_t>& left_out) const;
 
  private:
-  struct Entry {
-    std::size_t index = 0;  ///< of the models given
-    kernels::RecognitionModel model;
-    std::vector<kernels::Triplet> triplets;
+  struct Run {
+    std::string name;
+    std::size_t model = 0;  ///< of the models given
+    std::filesystem::path path;
   };
   std::filesystem::path folder_;
-  std::vector<Entry> entries_;  ///< by name
+  const engine::RunContext& context_;
+  std::vector<Run> runs_;  ///< by name
 };
 
 }  // namespace semigeo::recognition

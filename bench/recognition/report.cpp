@@ -110,6 +110,15 @@ void print_scene(const Outcome& o) {
               static_cast<unsigned long long>(o.seed));
 }
 
+void print_object(const ObjectOutcome& object) {
+  std::printf(" %s: rank %d, score %.3f", object.model.c_str(), object.rank, object.score);
+  const PoseError& error = object.ranked;
+  if (error.known() && !right(error))
+    std::printf(", off by %.0f degrees, %.1f %%, scale %.1f %%, surface %.1f %%", error.degrees,
+                100 * error.centre, 100 * error.scale, 100 * error.surface);
+  std::printf("%s;", object.reported ? "" : ", not reported");
+}
+
 Json pose_json(const PoseError& error) {
   if (!error.known()) return nullptr;
   return {{"degrees", error.degrees}, {"centre", error.centre},   {"box", error.box},
@@ -182,10 +191,7 @@ void print_misses(std::span<const Outcome> outcomes) {
                 : !o.posed() ? "wrong pose"
                              : "not reported",
                 o.first.empty() ? "nothing" : o.first.c_str());
-    for (const ObjectOutcome& object : o.objects)
-      std::printf(" %s: rank %d, score %.3f%s%s;", object.model.c_str(), object.rank, object.score,
-                  right(object.ranked) ? "" : ", pose wrong",
-                  object.reported ? "" : ", not reported");
+    for (const ObjectOutcome& object : o.objects) print_object(object);
     if (!o.best_wrong.empty())
       std::printf(" best wrong %s %.3f", o.best_wrong.c_str(), o.best_wrong_score);
     std::printf("\n");

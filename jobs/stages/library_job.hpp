@@ -16,7 +16,7 @@ struct LibraryJob {
   std::string parameters_json;                    ///< with which the runs were made
   std::filesystem::path output;
   std::string key;                ///< hash of everything the library depends on
-  std::int64_t memory_bytes = 0;  ///< for postings and buffers, at most; 0: 256 MiB
+  std::int64_t memory_bytes = 0;  ///< for postings and buffers, at most; 0: 512 MiB
 };
 
 struct LibraryJobResult {

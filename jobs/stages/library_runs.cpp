@@ -9,7 +9,7 @@ namespace semigeo::jobs {
 namespace {
 
 constexpr std::int64_t kRunsAtOnce = 64;
-constexpr std::int64_t kDefaultMemory = std::int64_t{256} << 20;
+constexpr std::int64_t kDefaultMemory = std::int64_t{512} << 20;
 
 }  // namespace
 

@@ -21,7 +21,7 @@ std::uint64_t for_each_run(const std::vector<std::filesystem::path>& runs, engin
 std::vector<engine::IndexRange> batches_of(std::span<const std::int64_t> sizes,
                                            std::int64_t capacity);
 
-/// What PartitionJob and LibraryJob mean by their memory_bytes: 256 MiB by 0.
+/// What PartitionJob and LibraryJob mean by their memory_bytes: 512 MiB by 0.
 std::int64_t memory_or_default(std::int64_t memory_bytes);
 
 }  // namespace semigeo::jobs

@@ -16,13 +16,14 @@ constexpr std::int64_t kTile = 512;
 
 /// Numbers of the triangles that triplets are, in whatever order of corners.
 std::vector<std::uint32_t> triangles_of(const std::vector<Triplet>& triplets) {
-  using Corners = std::array<std::uint16_t, 3>;
-  std::vector<std::pair<Corners, std::uint32_t>> sorted;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> sorted;
   sorted.reserve(triplets.size());
   for (const Triplet& triplet : triplets) {
-    Corners corners = triplet.corners;
+    std::array<std::uint16_t, 3> corners = triplet.corners;
     std::ranges::sort(corners);
-    sorted.emplace_back(corners, static_cast<std::uint32_t>(sorted.size()));
+    std::uint64_t packed = 0;
+    for (const std::uint16_t corner : corners) packed = packed << 16 | corner;
+    sorted.emplace_back(packed, static_cast<std::uint32_t>(sorted.size()));
   }
   std::ranges::sort(sorted);
   std::vector<std::uint32_t> numbers(triplets.size());
@@ -118,26 +119,28 @@ class Matcher {
   void compare_block(const std::pair<std::size_t, std::size_t>& segments,
                      std::vector<TripletMatch>& found) const {
     const std::vector<Posting> postings = library_.read_block(segments_[segments.first].block);
+    std::vector<std::uint32_t> compatible;
     for (std::size_t s = segments.first; s < segments.second; ++s) {
       const Segment& segment = segments_[s];
       for (std::int64_t tile = segment.first_posting; tile < segment.last_posting; tile += kTile) {
         const std::int64_t end = std::min(segment.last_posting, tile + kTile);
         const auto some = std::span(postings).subspan(tile, end - tile);
         for (std::size_t l = segment.first_lookup; l < segment.last_lookup; ++l)
-          compare(lookups_[l].triplet, some, found);
+          compare(lookups_[l].triplet, some, compatible, found);
       }
     }
   }
 
   void compare(std::uint32_t index, std::span<const Posting> postings,
-               std::vector<TripletMatch>& found) const {
+               std::vector<std::uint32_t>& compatible, std::vector<TripletMatch>& found) const {
     const Triplet& triplet = scene_[index];
-    for (const Posting& posting : postings)
-      if (kernels::compatible(triplet.invariants, posting.invariants))
-        found.push_back({.triangle = triangles_[index],
-                         .model = posting.model,
-                         .scene_corners = triplet.corners,
-                         .model_corners = posting.corners});
+    compatible.clear();
+    kernels::find_compatible(triplet.invariants, postings, compatible);
+    for (const std::uint32_t i : compatible)
+      found.push_back({.triangle = triangles_[index],
+                       .model = postings[i].model,
+                       .scene_corners = triplet.corners,
+                       .model_corners = postings[i].corners});
   }
 
   TripletMatches gathered(const std::vector<std::vector<TripletMatch>>& found) const {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "jobs/stages/match_triplets.hpp"
+#include "kernels/feature_triangle.hpp"
 #include "kernels/overlap.hpp"
 #include "kernels/pose_clusters.hpp"
 
@@ -14,7 +15,6 @@ namespace semigeo::jobs {
 namespace {
 
 using Eigen::Vector3d;
-using kernels::OrientedFeature;
 using kernels::RecognitionModel;
 using kernels::Similarity;
 
@@ -35,17 +35,6 @@ kernels::TripletOptions scene_triplets() {
   options.min_height *= 0.9;
   options.every_order = true;
   return options;
-}
-
-kernels::OrientedTriangle triangle_of(const RecognitionModel& model,
-                                      const std::array<std::uint16_t, 3>& corners) {
-  kernels::OrientedTriangle triangle;
-  for (int i = 0; i < 3; ++i) {
-    const OrientedFeature& feature = model.features.features[corners[i]];
-    triangle.points[i] = feature.position.cast<double>();
-    triangle.normals[i] = feature.normal.cast<double>();
-  }
-  return triangle;
 }
 
 /// A pose of a model, more and more closely looked at. Poses are from the model's own coordinates
@@ -125,8 +114,9 @@ class Recogniser {
     std::vector<kernels::PoseVote> votes;
     votes.reserve(matches.size());
     for (const TripletMatch& match : matches)
-      votes.push_back({kernels::similarity_between(triangle_of(model, match.model_corners),
-                                                   triangle_of(scene_, match.scene_corners)),
+      votes.push_back({kernels::similarity_between(
+                           kernels::feature_triangle(model.features, match.model_corners),
+                           kernels::feature_triangle(scene_.features, match.scene_corners)),
                        match.weight});
     for (const kernels::PoseCluster& cluster :
          kernels::pose_clusters(votes, model.centre.cast<double>(), model.diagonal, {})) {

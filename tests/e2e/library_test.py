@@ -10,7 +10,7 @@ import unittest
 
 import numpy as np
 
-from support import PROGRAM, TIMEOUT, SemigeoTest, bumpy, write_ply
+from support import PROGRAM, TIMEOUT, SemigeoTest, boulder, write_ply
 
 LEVELS = ("--levels", "2")
 
@@ -19,7 +19,7 @@ class LibraryTest(SemigeoTest):
     def setUp(self):
         super().setUp()
         for i in range(4):
-            write_ply(self.scans / f"{i}.ply", bumpy(i))
+            write_ply(self.scans / f"{i}.ply", boulder(3, i))
         self.library = self.archive / "library.h5"
         self.parts = self.archive / "library"
 
@@ -105,7 +105,7 @@ class BuildTest(LibraryTest):
     def test_a_job_that_crashes_costs_its_model_only(self):
         self.run_library()
         # The library must not have the model of the scan that was.
-        write_ply(self.scans / "1.ply", bumpy(17))
+        write_ply(self.scans / "1.ply", boulder(3, 17))
         for faults, code in (("triplets 1.ply=crash", 1), ("", 0)):
             process = self.semigeo("run", self.scans, "-o", self.archive, "--library", *LEVELS, "--json", code=code,
                                    env=os.environ | {"SEMIGEO_TEST_FAULTS": faults})

@@ -88,16 +88,13 @@ def icosphere(levels, radius=1.0):
     return radius * points, triangles
 
 
-def bumpy(seed, subdivisions=3):
-    """A sphere with dents and bumps, other ones for each seed: a surface with features."""
-    points, triangles = icosphere(subdivisions)
-    random = np.random.default_rng(seed)
-    centres = random.normal(size=(25, 3))
+def boulder(levels, seed):
+    """A sphere with bumps and dents."""
+    points, triangles = icosphere(levels)
+    centres = np.random.default_rng(seed).normal(size=(24, 3))
     centres /= np.linalg.norm(centres, axis=1)[:, None]
-    height = np.ones(len(points))
-    for centre, sign in zip(centres, random.choice([-1, 1], 25)):
-        height += 0.2 * sign * np.exp(-((points - centre) ** 2).sum(axis=1) / 0.03)
-    return points * height[:, None], triangles
+    near = np.exp(12 * (points @ centres.T - 1))
+    return points * (1 + near @ np.tile([0.15, -0.1], 12))[:, None], triangles
 
 
 def plane(cells):

@@ -16,18 +16,6 @@ semigeo_tests(io_dataset_tests
     xdmf_test.cpp
   LINK semigeo_sample_dataset)
 
-add_library(semigeo_sample_library STATIC sample_library.cpp)
-target_link_libraries(semigeo_sample_library PUBLIC semigeo::io semigeo_shapes)
-
-semigeo_tests(io_library_tests
-  LABEL unit
-  SOURCES
-    hash_library_test.cpp
-    packed_normal_test.cpp
-    posting_partition_test.cpp
-    triplet_run_test.cpp
-  LINK semigeo_sample_library)
-
 add_executable(write_sample_dataset write_sample_dataset.cpp)
 target_link_libraries(write_sample_dataset PRIVATE semigeo_sample_dataset)
 

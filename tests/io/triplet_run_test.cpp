@@ -123,13 +123,14 @@ TEST_F(TripletRunTest, ContentHashTellsContentsApart) {
 TEST_F(TripletRunTest, DamageAnywhereIsNoticed) {
   write();
   const std::string good = read_all(path_);
-  for (std::size_t at = 0; at < good.size(); at += 5) {
+  for (std::size_t at = 0; at < good.size(); at += 23) {
     std::string bad = good;
     bad[at] = static_cast<char>(bad[at] ^ 1 << at % 8);
     write_all(path_, bad);
     EXPECT_NE(message(), "") << "byte " << at;
+    EXPECT_THROW(triplet_run_key(path_), Error) << "byte " << at;
   }
-  for (std::size_t size = 0; size < good.size(); size += 13) {
+  for (std::size_t size = 0; size < good.size(); size += 211) {
     write_all(path_, good.substr(0, size));
     EXPECT_NE(message(), "") << size << " bytes";
   }
