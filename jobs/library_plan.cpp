@@ -25,14 +25,24 @@ const char* inputs_of(JobKind kind) {
   return kind == JobKind::kTriplets ? "the dataset" : "the models";
 }
 
-/// Compares what is there with what the job would make.
-void decide(PlannedJob& planned) {
+/// The key of a run without reading all of it, as output_key does.
+std::string header_key(const Job& job) {
+  try {
+    return io::TripletRun(job.output).job_key();
+  } catch (const io::Error&) {
+    return "";
+  }
+}
+
+/// Compares what is there with what the job would make. While the library is what it should be,
+/// nobody is going to read its runs: their headers will do.
+void decide(PlannedJob& planned, bool by_header = false) {
   const Job& job = planned.job;
   const std::string name(output_name_of(job.kind));
   std::error_code ignored;
   if (!fs::exists(job.output, ignored)) {
     planned.reasons = {{.kind = Kind::kNoOutput, .before = name}};
-  } else if (const std::string key = output_key(job); key.empty()) {
+  } else if (const std::string key = by_header ? header_key(job) : output_key(job); key.empty()) {
     planned.reasons = {{.kind = Kind::kUnusableOutput, .before = name}};
   } else if (key != job.key) {
     planned.reasons = {{.kind = Kind::kInputs, .before = name, .now = inputs_of(job.kind)}};
@@ -51,15 +61,12 @@ PlannedJob triplets_of(const LibraryModel& model, const fs::path& parts,
                  .key = triplets_key(model.name, model.dataset_key, parameters)};
   if (model.maker) planned.after = {*model.maker};
   planned.error = model.error;
-  if (planned.error.empty()) decide(planned);
   return planned;
 }
 
 std::string problem_of_run(const fs::path& path) {
   try {
-    const io::TripletRun run(path);
-    run.read_model();
-    run.read_triplets({});
+    io::triplet_run_key(path);
     return "";
   } catch (const io::Error& error) {
     return error.what();
@@ -166,6 +173,8 @@ void plan_library(std::vector<PlannedJob>& plan, const std::vector<LibraryModel>
                  .key = library_key(keys, parameters),
                  .models = names};
   decide(library);
+  for (const std::size_t triplets : after)
+    if (plan[triplets].error.empty()) decide(plan[triplets], library.up_to_date);
   for (const io::ShapeRange& shapes : partition_shapes(std::ssize(keys))) {
     PlannedJob partition;
     const fs::path output = partition_path(place.parts, library.job.partitions++);
