@@ -99,19 +99,22 @@ AtomicFile::~AtomicFile() {
   if (!committed_) std::filesystem::remove(temporary_path_, ignored);
 }
 
-void AtomicFile::sync() const {
+void AtomicFile::sync() {
   sync_path(temporary_path_, final_path_, 0);
+  synced_ = true;
 }
 
-void AtomicFile::commit() {
-  sync();
+void AtomicFile::commit(Folder folder) {
+  if (!synced_) sync();
   if (std::rename(temporary_path_.c_str(), final_path_.c_str()) != 0)
     fail(final_path_, "cannot give the finished file its name", errno);
   committed_ = true;
-  sync_path(folder_of(final_path_), folder_of(final_path_), O_DIRECTORY);
+  if (folder == Folder::synced)
+    sync_path(folder_of(final_path_), folder_of(final_path_), O_DIRECTORY);
 }
 
-void write_file_atomically(const std::filesystem::path& path, std::string_view content) {
+void write_file_atomically(const std::filesystem::path& path, std::string_view content,
+                           Folder folder) {
   AtomicFile file(path);
   {
     FileDescriptor descriptor(file.temporary_path(), O_WRONLY | O_CREAT | O_TRUNC);
@@ -124,7 +127,7 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
     }
     if (descriptor.close() != 0) fail(path, "cannot write it", errno);
   }
-  file.commit();
+  file.commit(folder);
 }
 
 int remove_stale_partials(const std::filesystem::path& folder) {

@@ -160,7 +160,8 @@ std::string DatasetWriter::finish() {
   }
   // The sidecar first: a dataset under its final name counts as done and is not looked at again.
   write_file_atomically(sidecar_of(target_.final_path()),
-                        xdmf_text(target_.final_path().filename().string(), steps_));
+                        xdmf_text(target_.final_path().filename().string(), steps_),
+                        Folder::left);
   target_.commit();
   return digest;
 }
