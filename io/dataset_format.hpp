@@ -12,7 +12,7 @@ namespace semigeo::io {
 // What the writer and the reader of a dataset agree on; io/DATASET.md is its description.
 
 inline constexpr const char* kDatasetFormat = "semigeo-dataset";
-inline constexpr std::int64_t kDatasetFormatVersion = 3;
+inline constexpr std::int64_t kDatasetFormatVersion = 4;
 inline constexpr int kMostLevels = 1000;  // three digits
 
 /// Where a dataset comes from; attributes of the root.

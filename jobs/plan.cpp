@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using Kind = Reason::Kind;
 
 /// Part of every key: raised whenever the same scan and parameters give other bytes.
-constexpr const char* kSurfaceJobVersion = "surface 9";
+constexpr const char* kSurfaceJobVersion = "surface 10";
 std::string key_of(const std::string& name, const std::string& input_xxh3,
                    const std::string& parameters_json) {
   return io::xxh3_of_text(std::string(kSurfaceJobVersion) + '\n' + parameters_json + '\n' + name +

@@ -94,6 +94,40 @@ TEST(Hdf5, ListsGroupsArraysAndLinks) {
   EXPECT_FALSE(read.has("/x/y/z"));
 }
 
+// Small groups lie in their object header, others in a heap with an index.
+TEST(Hdf5, GroupsMayHaveManyEntriesAndAttributes) {
+  const tests::TemporaryFolder folder;
+  Hdf5File file = Hdf5File::create(folder / "a.h5");
+  file.create_group("/g");
+  for (std::int64_t i = 0; i < 200; ++i) {
+    file.create_group("/g/" + std::to_string(i));
+    file.write_attribute("/g", std::to_string(i), i);
+  }
+  file.close();
+  const Hdf5File read = Hdf5File::open(folder / "a.h5");
+  EXPECT_EQ(read.links("/g").size(), 200U);
+  EXPECT_EQ(read.read_attribute_as<std::int64_t>("/g", "123"), 123);
+  EXPECT_EQ(read.attributes("/g").size(), 200U);
+  EXPECT_EQ(read.read_attribute_as<std::int64_t>("/g", "123"), 123);
+  EXPECT_FALSE(read.has_attribute("/g", "200"));
+  EXPECT_TRUE(read.has("/g/199"));
+  EXPECT_FALSE(read.has("/g/200"));
+  EXPECT_FALSE(read.has("/h/199"));
+}
+
+TEST(Hdf5, SmallArraysAreReadOnce) {
+  const tests::TemporaryFolder folder;
+  Hdf5File file = Hdf5File::create(folder / "a.h5");
+  const EncodedArray array = encode({1, 2, 3});
+  file.write_array("/a", array);
+  file.close();
+  const Hdf5File read = Hdf5File::open(folder / "a.h5");
+  EXPECT_EQ(read.shape_of("/a"), array.shape);
+  EXPECT_EQ(read_floats(read, "/a", 1), (std::vector<float>{1, 2, 3}));
+  std::ofstream(folder / "a.h5") << "gone";
+  EXPECT_EQ(read_floats(read, "/a", 1), (std::vector<float>{1, 2, 3}));
+}
+
 TEST(Hdf5, VirtualArraysShowTheirSourcesOneAfterTheOther) {
   const tests::TemporaryFolder folder;
   const std::vector<Eigen::Vector3f> points = {{1, 2, 3}, {4, 5, 6}};
