@@ -131,13 +131,11 @@ class Hdf5File {
   [[noreturn]] void fail(const std::string& place, const std::string& action) const;
   std::int64_t checked(std::int64_t result, const std::string& place, const char* action) const;
   std::int64_t id() const;
-  /// The object, which stays open until another one is asked for: most calls are about the object
-  /// of the call before, or its entries.
+  /// The object, open until another one is asked for: most calls are about that of the one before.
   std::int64_t opened(const std::string& path) const;
-  /// The group of an object, open, and the object's name in it.
   struct Entry {
-    std::int64_t group;
-    const char* name;  // lives as long as the path
+    std::int64_t group;  // of an object, open
+    const char* name;    // of the object in it; lives as long as the path
   };
   Entry entry(const std::string& path) const;
   void write_chunks(const std::string& path, std::int64_t set, const EncodedArray& array) const;
@@ -145,7 +143,6 @@ class Hdf5File {
   std::optional<ElementType> element_type(std::int64_t type) const;
   Hdf5Attribute read(const Hdf5Handle& attribute, const std::string& object,
                      const std::string& name) const;
-  /// Null unless all of the object's attributes have been looked at.
   const Hdf5Attribute* find_known(const std::string& object, const std::string& name) const;
   Hdf5Handle open_attribute(const std::string& object, const std::string& name) const;
 
@@ -166,8 +163,7 @@ class Hdf5File {
   Hdf5Handle handle_;
   std::filesystem::path shown_as_;
   bool writing_ = false;
-  // What has been looked at or written: a file that is read does not change, nor does an object
-  // that is written.
+  // What has been looked at or written, neither of which changes.
   mutable std::map<std::string, KnownArray> arrays_;
   mutable std::map<std::string, std::vector<Hdf5Attribute>> attributes_;
   mutable std::map<ElementType, Hdf5Handle> records_;  // types of theirs
