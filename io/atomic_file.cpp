@@ -106,11 +106,15 @@ void AtomicFile::sync() {
 
 void AtomicFile::commit(Folder folder) {
   if (!synced_) sync();
+  commit_unsynced();
+  if (folder == Folder::synced)
+    sync_path(folder_of(final_path_), folder_of(final_path_), O_DIRECTORY);
+}
+
+void AtomicFile::commit_unsynced() {
   if (std::rename(temporary_path_.c_str(), final_path_.c_str()) != 0)
     fail(final_path_, "cannot give the finished file its name", errno);
   committed_ = true;
-  if (folder == Folder::synced)
-    sync_path(folder_of(final_path_), folder_of(final_path_), O_DIRECTORY);
 }
 
 void write_file_atomically(const std::filesystem::path& path, std::string_view content,

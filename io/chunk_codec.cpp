@@ -67,6 +67,8 @@ void gather_rows(const ArrayView& view, std::int64_t first, std::int64_t count, 
       convert_rows<std::uint32_t, std::uint32_t>(view, first, count, out);
     } else if (size_of(view.memory_type) == 8) {
       convert_rows<std::uint64_t, std::uint64_t>(view, first, count, out);
+    } else if (size_of(view.memory_type) == 2) {
+      convert_rows<std::uint16_t, std::uint16_t>(view, first, count, out);
     } else {
       convert_rows<std::uint8_t, std::uint8_t>(view, first, count, out);
     }

@@ -40,10 +40,12 @@ std::string described(std::string_view kind, const std::string& path, ElementTyp
   return line + " ";
 }
 
+using Seen = std::function<void(const std::string&, std::span<const std::byte>)>;
+
 // Walks a file and enters what it reads.
 class Walk {
  public:
-  explicit Walk(const Hdf5File& file) : file_(file) {}
+  Walk(const Hdf5File& file, const Seen& seen) : file_(file), seen_(seen) {}
 
   std::string digest() {
     first_path_.emplace(file_.address("/"), "/");
@@ -87,12 +89,15 @@ class Walk {
       return;
     }
     std::vector<std::uint64_t> hashes;
-    for_each_chunk(array,
-                   [&](std::span<const std::byte> rows) { hashes.push_back(xxh3_64(rows)); });
+    for_each_chunk(array, [&](std::span<const std::byte> rows) {
+      hashes.push_back(xxh3_64(rows));
+      if (seen_) seen_(path, rows);
+    });
     digest_.add_array(path, array.shape(), hashes);
   }
 
   const Hdf5File& file_;
+  const Seen& seen_;
   std::map<std::uint64_t, std::string> first_path_;
   ContentDigest digest_;
 };
@@ -134,8 +139,8 @@ std::string ContentDigest::hex() const {
   return hex64(hash.high64) + hex64(hash.low64);
 }
 
-std::string content_digest(const Hdf5File& file) {
-  return Walk(file).digest();
+std::string content_digest(const Hdf5File& file, const Seen& seen) {
+  return Walk(file, seen).digest();
 }
 
 void DigestedFile::create_group(const std::string& path) {
@@ -148,6 +153,20 @@ void DigestedFile::write_array(const std::string& path, const EncodedArray& arra
   std::vector<std::uint64_t> hashes;
   for (const EncodedChunk& chunk : array.chunks) hashes.push_back(chunk.raw_xxh3);
   digest_.add_array(path, array.shape, hashes);
+}
+
+DigestedFile::Growing DigestedFile::begin_array(const std::string& path, const ArrayShape& shape) {
+  return {digest_, file_.begin_array(path, shape)};
+}
+
+void DigestedFile::Growing::write_chunk(const EncodedChunk& chunk) {
+  array_.write_chunk(chunk);
+  hashes_.push_back(chunk.raw_xxh3);
+}
+
+void DigestedFile::Growing::close() {
+  array_.close();
+  digest_->add_array(array_.path(), array_.shape(), hashes_);
 }
 
 void DigestedFile::write_virtual(const std::string& path, ElementType type, int columns,

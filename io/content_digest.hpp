@@ -1,11 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
-#include "io/hdf5.hpp"
+#include "io/hdf5_array.hpp"
 
 namespace semigeo::io {
 
@@ -33,8 +37,11 @@ class ContentDigest {
 };
 
 /// The digest of what `file` holds, by reading all of it, one chunk in memory at a time. Error when
-/// a checksum is wrong or an object is none that a dataset uses.
-std::string content_digest(const Hdf5File& file);
+/// a checksum is wrong or an object is none that a dataset uses. `seen` is given the rows of each
+/// chunk of each array as they go by, in order, and the array's path.
+std::string content_digest(
+    const Hdf5File& file,
+    const std::function<void(const std::string&, std::span<const std::byte>)>& seen = {});
 
 /// An HDF5 file in the making that enters each object in the digest as it is written.
 class DigestedFile {
@@ -43,6 +50,23 @@ class DigestedFile {
 
   void create_group(const std::string& path);
   void write_array(const std::string& path, const EncodedArray& array);
+  /// An array whose chunks come one by one. This object must outlive it and stay where it is.
+  class Growing {
+   public:
+    const ArrayShape& shape() const { return array_.shape(); }
+    void write_chunk(const EncodedChunk& chunk);  ///< the next
+    /// To be called after the last chunk.
+    void close();
+
+   private:
+    friend class DigestedFile;
+    Growing(ContentDigest& digest, Hdf5File::Growing array)
+        : digest_(&digest), array_(std::move(array)) {}
+    ContentDigest* digest_;
+    Hdf5File::Growing array_;
+    std::vector<std::uint64_t> hashes_;
+  };
+  Growing begin_array(const std::string& path, const ArrayShape& shape);
   void write_virtual(const std::string& path, ElementType type, int columns,
                      std::span<const VirtualPiece> pieces);
   void write_attribute(const std::string& object, const std::string& name,

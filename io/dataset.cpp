@@ -3,36 +3,13 @@
 #include <algorithm>
 
 #include "io/array_reader.hpp"
+#include "io/complete_file.hpp"
 #include "io/content_digest.hpp"
 #include "io/error.hpp"
 #include "io/vtkhdf.hpp"
 
 namespace semigeo::io {
 namespace {
-
-// Of a dataset of ours, whatever its state.
-void require_format(const Hdf5File& file) {
-  if (!file.has_attribute("/", "format") || !file.has_attribute("/", "format_version") ||
-      file.read_attribute_as<std::string>("/", "format") != kDatasetFormat)
-    throw Error(file.path(), "", "is an HDF5 file but not a semigeo dataset",
-                "give a file that `semigeo run` made");
-  const auto version = file.read_attribute_as<std::int64_t>("/", "format_version");
-  if (version != kDatasetFormatVersion)
-    throw Error(file.path(), "",
-                "has dataset format " + std::to_string(version) + ", this program reads " +
-                    std::to_string(kDatasetFormatVersion),
-                "use the version of semigeo that made it, or compute it again");
-}
-
-/// Refuses other formats, versions of the future, and unfinished files.
-Hdf5File open_complete(const std::filesystem::path& path) {
-  Hdf5File file = Hdf5File::open(path);
-  require_format(file);
-  if (!file.has_attribute("/", "complete") ||
-      file.read_attribute_as<std::int64_t>("/", "complete") != 1)
-    file.refuse("", "was not written to its end");
-  return file;
-}
 
 const LevelArray* find_array(std::string_view name) {
   const auto* found = std::ranges::find(kLevelArrays, name, &LevelArray::name);
@@ -46,7 +23,7 @@ std::string level_path(std::int64_t level) {
   return "/levels/" + std::string(digits.size() < 3 ? 3 - digits.size() : 0, '0') + digits;
 }
 
-Dataset::Dataset(const std::filesystem::path& path) : file_(open_complete(path)) {
+Dataset::Dataset(const std::filesystem::path& path) : file_(open_complete(path, kDatasetFormat)) {
   digest_ = text("digest");
   creator_version_ = text("creator_version");
   header_.parameters_json = text("parameters");
@@ -146,7 +123,7 @@ void Dataset::verify() const {
 }
 
 DatasetOrigin read_origin(const std::filesystem::path& path) {
-  const Hdf5File file = open_complete(path);
+  const Hdf5File file = open_complete(path, kDatasetFormat);
   const auto text = [&](const char* name) {
     return file.read_attribute_as<std::string>("/", name);
   };

@@ -4,15 +4,18 @@
 #include <cstdint>
 #include <string>
 
-#include "io/hdf5.hpp"
+#include "io/complete_file.hpp"
 #include "kernels/remesh_counts.hpp"
 
 namespace semigeo::io {
 
 // What the writer and the reader of a dataset agree on; io/DATASET.md is its description.
 
-inline constexpr const char* kDatasetFormat = "semigeo-dataset";
 inline constexpr std::int64_t kDatasetFormatVersion = 4;
+inline constexpr FileFormat kDatasetFormat = {.name = "semigeo-dataset",
+                                              .version = kDatasetFormatVersion,
+                                              .noun = "dataset",
+                                              .remedy = "give a file that `semigeo run` made"};
 inline constexpr int kMostLevels = 1000;  // three digits
 
 /// Where a dataset comes from; attributes of the root.

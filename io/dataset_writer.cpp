@@ -18,19 +18,12 @@ const LevelArray& format_of(std::string_view name) {
 void write_header(DigestedFile& file, const DatasetHeader& header) {
   const std::vector<double> origin(header.origin.begin(), header.origin.end());
   const std::pair<const char*, AttributeValue> attributes[] = {
-      {"format", kDatasetFormat},
-      {"format_version", kDatasetFormatVersion},
-      {"creator", "semigeo"},
-      {"creator_version", SEMIGEO_VERSION},
-      {"length_unit", header.length_unit},
-      {"origin", origin},
-      {"parameters", header.parameters_json},
-      {"input_name", header.input_name},
-      {"input_xxh3", header.input_xxh3},
-      {"job_key", header.job_key},
-      {"repairs", header.repairs_json},
-      {"preparation", header.preparation_json},
+      {"length_unit", header.length_unit},    {"origin", origin},
+      {"parameters", header.parameters_json}, {"input_name", header.input_name},
+      {"input_xxh3", header.input_xxh3},      {"job_key", header.job_key},
+      {"repairs", header.repairs_json},       {"preparation", header.preparation_json},
   };
+  write_format(file, kDatasetFormat);
   for (const auto& [name, value] : attributes) file.write_attribute("/", name, value);
 }
 
@@ -141,23 +134,11 @@ void DatasetWriter::write_selection(const Selection& selection) {
 std::string DatasetWriter::finish() {
   if (!selected_) throw std::invalid_argument("the last level or the selection was not written");
   write_vtkhdf(file_, vtkhdf_layout(steps_), compression_);
-  std::string digest = file_.digest().hex();
-  Hdf5File& file = file_.file();
-  file.write_attribute("/", "digest", digest);
-  file.flush();
-  file.write_attribute("/", "complete", std::int64_t{1});
-  file.close();
-  target_.sync();
-  try {
-    const Dataset written(target_.temporary_path());
+  std::string digest = complete_file(file_, target_, [](const std::filesystem::path& path) {
+    const Dataset written(path);
     written.verify();
-    if (written.digest() != digest)
-      throw Error(target_.final_path(), "", "its digest is not that of what was written");
-  } catch (const Error& error) {
-    throw Error(target_.final_path(), error.place(),
-                "what was just written reads back wrong (" + error.problem() + ")",
-                "check the disk and run again");
-  }
+    return written.digest();
+  });
   // The sidecar first: a dataset under its final name counts as done and is not looked at again.
   write_file_atomically(sidecar_of(target_.final_path()),
                         xdmf_text(target_.final_path().filename().string(), steps_), Folder::left);

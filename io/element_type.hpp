@@ -9,7 +9,18 @@ namespace semigeo::io {
 
 /// Element types of stored arrays, all little endian. A record is an element as well: a row of
 /// named members, one after the other without gaps (a compound of HDF5).
-enum class ElementType { float32, float64, int32, int64, uint8, feature, contour };
+enum class ElementType {
+  float32,
+  float64,
+  int32,
+  int64,
+  uint8,
+  uint16,
+  feature,
+  contour,
+  oriented_feature,
+  posting
+};
 
 /// A member of a record: one number, or a short array of `columns` of them.
 struct RecordMember {
@@ -40,11 +51,38 @@ inline constexpr std::array<RecordMember, 4> kContourMembers = {{
     {"closed", ElementType::int32},
 }};
 
-/// Of a record; none of a number.
+/// ElementType::oriented_feature, a feature of a library's model: kernels::OrientedFeature.
+inline constexpr std::array<RecordMember, 7> kOrientedFeatureMembers = {{
+    {"position", ElementType::float32, 3},
+    {"normal", ElementType::float32, 3},
+    {"scale_free_gaussian", ElementType::float32},
+    {"scale_free_mean", ElementType::float32},
+    {"value", ElementType::float32},
+    {"code", ElementType::uint8},
+    {"level", ElementType::uint8},
+}};
+
+/// ElementType::posting, a triplet of a library: kernels::Posting.
+inline constexpr std::array<RecordMember, 3> kPostingMembers = {{
+    {"invariants", ElementType::uint8, 16},
+    {"model", ElementType::int32},
+    {"corners", ElementType::uint16, 3},
+}};
+
+/// Of a record; a number has none.
 constexpr std::span<const RecordMember> members_of(ElementType type) {
-  if (type == ElementType::feature) return kFeatureMembers;
-  if (type == ElementType::contour) return kContourMembers;
-  return {};
+  switch (type) {
+    case ElementType::feature:
+      return kFeatureMembers;
+    case ElementType::contour:
+      return kContourMembers;
+    case ElementType::oriented_feature:
+      return kOrientedFeatureMembers;
+    case ElementType::posting:
+      return kPostingMembers;
+    default:
+      return {};
+  }
 }
 
 constexpr std::int64_t size_of(ElementType type) {
@@ -57,15 +95,19 @@ constexpr std::int64_t size_of(ElementType type) {
       return 8;
     case ElementType::uint8:
       return 1;
-    case ElementType::feature:
-    case ElementType::contour:
-      break;
+    case ElementType::uint16:
+      return 2;
+    default:
+      break;  // a record
   }
   std::int64_t size = 0;
   for (const RecordMember& member : members_of(type)) size += member.columns * size_of(member.type);
   return size;
 }
-static_assert(size_of(ElementType::feature) == 72 && size_of(ElementType::contour) == 24);
+static_assert(size_of(ElementType::feature) == 72);
+static_assert(size_of(ElementType::contour) == 24);
+static_assert(size_of(ElementType::oriented_feature) == 38);
+static_assert(size_of(ElementType::posting) == 26);
 
 /// As messages and the content digest have it; of a record with its members.
 constexpr std::string_view name_of(ElementType type) {
@@ -80,12 +122,19 @@ constexpr std::string_view name_of(ElementType type) {
       return "int64";
     case ElementType::uint8:
       return "uint8";
+    case ElementType::uint16:
+      return "uint16";
     case ElementType::feature:
       return "{vertex:int64,value:float32,prominence:float32,position:float32[3],"
              "initial_position:float32[3],normal:float32[3],scale_free_gaussian:float32,"
              "scale_free_mean:float32,kind:int32,contour_point:int64}";
     case ElementType::contour:
       return "{first:int64,count:int64,kind:int32,closed:int32}";
+    case ElementType::oriented_feature:
+      return "{position:float32[3],normal:float32[3],scale_free_gaussian:float32,"
+             "scale_free_mean:float32,value:float32,code:uint8,level:uint8}";
+    case ElementType::posting:
+      return "{invariants:uint8[16],model:int32,corners:uint16[3]}";
   }
   return "?";
 }

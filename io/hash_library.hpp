@@ -2,11 +2,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "io/hdf5.hpp"
 #include "kernels/recognition_model.hpp"
 
 namespace semigeo::io {
@@ -28,6 +28,9 @@ class HashLibrary {
  public:
   /// Refuses other formats, versions of the future and unfinished files.
   explicit HashLibrary(const std::filesystem::path& path);
+  ~HashLibrary();
+  HashLibrary(HashLibrary&&) noexcept;
+  HashLibrary& operator=(HashLibrary&&) noexcept;
 
   const std::filesystem::path& path() const;
   const std::string& parameters_json() const;  ///< with which triplets were made
@@ -46,8 +49,17 @@ class HashLibrary {
   /// May be called by several threads at once.
   kernels::RecognitionModel read_model(std::int64_t model) const;
 
-  /// Reads everything against checksums and the digest; order, ranges and indices too.
+  /// Reads everything against checksums and the digest; order, ranges and indices too. Memory: one
+  /// chunk. Other threads wait meanwhile.
   void verify() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
 };
+
+/// The key of the job that made a library; Error if the file is absent, unreadable, of another
+/// format or version, or incomplete. Reads a few kB.
+std::string library_key(const std::filesystem::path& path);
 
 }  // namespace semigeo::io

@@ -85,6 +85,9 @@ class Hdf5File {
 
   void create_group(const std::string& path);
   void write_array(const std::string& path, const EncodedArray& array);
+  class Growing;  // io/hdf5_array.hpp
+  /// An array whose chunks come one by one; others may be written in between.
+  Growing begin_array(const std::string& path, const ArrayShape& shape);
   void write_virtual(const std::string& path, ElementType type, int columns,
                      std::span<const VirtualPiece> pieces);
   void write_attribute(const std::string& object, const std::string& name,
@@ -113,7 +116,7 @@ class Hdf5File {
   /// As io::attribute_type, or "unsupported".
   std::string attribute_type(const std::string& object, const std::string& name) const;
 
-  class Array;
+  class Array;  // io/hdf5_array.hpp
   /// What it is, and all of a small array, is looked at once: opening it again costs nothing.
   Array open_array(const std::string& path) const;
   ArrayShape shape_of(const std::string& path) const { return look_at(path).shape; }
@@ -138,7 +141,6 @@ class Hdf5File {
     const char* name;    // of the object in it; lives as long as the path
   };
   Entry entry(const std::string& path) const;
-  void write_chunks(const std::string& path, std::int64_t set, const EncodedArray& array) const;
   std::int64_t type_of(ElementType type) const;
   std::optional<ElementType> element_type(std::int64_t type) const;
   Hdf5Attribute read(const Hdf5Handle& attribute, const std::string& object,
@@ -169,32 +171,6 @@ class Hdf5File {
   mutable std::map<ElementType, Hdf5Handle> records_;  // types of theirs
   mutable std::string opened_path_;
   mutable Hdf5Handle opened_;  // after handle_, so that it is closed before
-};
-
-/// An open array of a file, which must outlive it.
-class Hdf5File::Array {
- public:
-  /// For a virtual array only type, rows and columns mean anything.
-  const ArrayShape& shape() const { return known_->shape; }
-  const std::string& path() const { return path_; }
-  const Hdf5File& file() const { return *file_; }
-  bool is_virtual() const { return known_->is_virtual; }
-  bool has_attributes() const;
-  /// Bytes of all its chunks in the file.
-  std::int64_t stored_bytes() const;
-  /// The chunk as it lies in the file, without its hash.
-  EncodedChunk read_chunk(std::int64_t index) const;
-  const std::vector<VirtualPiece>& virtual_pieces() const { return known_->pieces; }
-
- private:
-  friend class Hdf5File;
-  Array(const Hdf5File& file, std::string path) : file_(&file), path_(std::move(path)) {}
-  std::int64_t opened() const;
-
-  const Hdf5File* file_;
-  std::string path_;
-  const KnownArray* known_ = nullptr;
-  mutable Hdf5Handle handle_;  // opened when it is needed
 };
 
 }  // namespace semigeo::io

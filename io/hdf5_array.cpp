@@ -1,9 +1,10 @@
+#include "io/hdf5_array.hpp"
+
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
 
-#include "io/hdf5.hpp"
 #include "io/hdf5_library.hpp"
 
 namespace semigeo::io {
@@ -24,9 +25,10 @@ hid_t number_type(ElementType type) {
       return H5T_STD_I64LE;
     case ElementType::uint8:
       return H5T_STD_U8LE;
-    case ElementType::feature:
-    case ElementType::contour:
-      break;
+    case ElementType::uint16:
+      return H5T_STD_U16LE;
+    default:
+      break;  // a record
   }
   return H5I_INVALID_HID;
 }
@@ -88,16 +90,22 @@ std::int64_t Hdf5File::type_of(ElementType type) const {
 std::optional<ElementType> Hdf5File::element_type(std::int64_t type) const {
   using enum ElementType;
   const bool record = H5Tget_class(type) == H5T_COMPOUND;
-  for (const ElementType known : {float32, float64, int32, int64, uint8, feature, contour})
+  for (const ElementType known :
+       {float32, float64, int32, int64, uint8, uint16, feature, contour, oriented_feature, posting})
     if (members_of(known).empty() != record && H5Tequal(type, type_of(known)) > 0) return known;
   return std::nullopt;
 }
 
 void Hdf5File::write_array(const std::string& path, const EncodedArray& array) {
-  const Entry place = entry(path);
-  const ArrayShape& shape = array.shape;
-  if (static_cast<std::int64_t>(array.chunks.size()) != shape.chunk_count())
+  if (static_cast<std::int64_t>(array.chunks.size()) != array.shape.chunk_count())
     throw std::invalid_argument(path + ": not every chunk was encoded");
+  Growing growing = begin_array(path, array.shape);
+  for (const EncodedChunk& chunk : array.chunks) growing.write_chunk(chunk);
+  growing.close();
+}
+
+Hdf5File::Growing Hdf5File::begin_array(const std::string& path, const ArrayShape& shape) {
+  const Entry place = entry(path);
   const Hdf5Handle properties = array_properties();
   if (shape.compact) {
     H5Pset_layout(properties.get(), H5D_COMPACT);
@@ -111,34 +119,43 @@ void Hdf5File::write_array(const std::string& path, const EncodedArray& array) {
     H5Pset_fletcher32(properties.get());
   }
   const Hdf5Handle space = make_space(shape.rows, shape.columns);
-  const std::int64_t type = type_of(shape.type);
-  Hdf5Handle set(checked(H5Dcreate2(place.group, place.name, type, space.get(), H5P_DEFAULT,
-                                    properties.get(), H5P_DEFAULT),
+  Hdf5Handle set(checked(H5Dcreate2(place.group, place.name, type_of(shape.type), space.get(),
+                                    H5P_DEFAULT, properties.get(), H5P_DEFAULT),
                          path, "create the dataset"),
                  H5Dclose);
   KnownArray& known = arrays_[path];
   known = {.shape = shape, .is_virtual = false, .pieces = {}, .rows = {}};
-  if (shape.compact) {
-    known.rows = array.chunks.front().bytes;
-    if (static_cast<std::int64_t>(known.rows.size()) != shape.rows * shape.row_bytes())
-      throw std::invalid_argument(path + ": its rows have another size");
-    checked(H5Dwrite(set.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, known.rows.data()), path,
-            "write the dataset");
-  } else {
-    write_chunks(path, set.get(), array);
-  }
-  checked(set.close(), path, "close the dataset");
+  return {*this, path, known, std::move(set)};
 }
 
-void Hdf5File::write_chunks(const std::string& path, std::int64_t set,
-                            const EncodedArray& array) const {
-  for (std::size_t i = 0; i < array.chunks.size(); ++i) {
-    const EncodedChunk& chunk = array.chunks[i];
-    const Extent offset = extent(static_cast<std::int64_t>(i) * array.shape.chunk_rows, 0);
-    checked(H5Dwrite_chunk(set, H5P_DEFAULT, chunk.filter_mask, offset.data(), chunk.bytes.size(),
-                           chunk.bytes.data()),
-            path, "write a chunk");
+void Hdf5File::Growing::write_chunk(const EncodedChunk& chunk) {
+  prepare_library();
+  if (written_ >= shape().chunk_count())
+    throw std::invalid_argument(path_ + ": more chunks than its shape has");
+  const Extent offset = extent(written_++ * shape().chunk_rows, 0);
+  if (shape().compact) {
+    write_compact(chunk.bytes);
+    return;
   }
+  file_->checked(H5Dwrite_chunk(handle_.get(), H5P_DEFAULT, chunk.filter_mask, offset.data(),
+                                chunk.bytes.size(), chunk.bytes.data()),
+                 path_, "write a chunk");
+}
+
+void Hdf5File::Growing::write_compact(const std::vector<std::byte>& rows) {
+  if (static_cast<std::int64_t>(rows.size()) != shape().rows * shape().row_bytes())
+    throw std::invalid_argument(path_ + ": its rows have another size");
+  file_->checked(H5Dwrite(handle_.get(), file_->type_of(shape().type), H5S_ALL, H5S_ALL,
+                          H5P_DEFAULT, rows.data()),
+                 path_, "write the dataset");
+  known_->rows = rows;
+}
+
+void Hdf5File::Growing::close() {
+  prepare_library();
+  if (written_ != shape().chunk_count())
+    throw std::invalid_argument(path_ + ": not every chunk was written");
+  file_->checked(handle_.close(), path_, "close the dataset");
 }
 
 void Hdf5File::write_virtual(const std::string& path, ElementType type, int columns,

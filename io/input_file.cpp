@@ -53,14 +53,30 @@ std::size_t InputFile::read(std::span<char> bytes) {
   while (done < bytes.size()) {
     const ssize_t got = ::read(descriptor_, bytes.data() + done, bytes.size() - done);
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0)
-      throw Error(path_, "byte " + std::to_string(position_),
-                  "cannot be read: " + system_message(errno), "check the disk it is on");
+    if (got < 0) fail(static_cast<std::uint64_t>(position_));
     if (got == 0) break;
     done += static_cast<std::size_t>(got);
     position_ += got;
   }
   return done;
+}
+
+std::size_t InputFile::read_at(std::uint64_t offset, std::span<char> bytes) const {
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t got = ::pread(descriptor_, bytes.data() + done, bytes.size() - done,
+                                static_cast<off_t>(offset + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail(offset + done);
+    if (got == 0) break;
+    done += static_cast<std::size_t>(got);
+  }
+  return done;
+}
+
+void InputFile::fail(std::uint64_t offset) const {
+  throw Error(path_, "byte " + std::to_string(offset), "cannot be read: " + system_message(errno),
+              "check the disk it is on");
 }
 
 }  // namespace semigeo::io

@@ -7,8 +7,8 @@
 
 namespace semigeo::io {
 
-/// A regular file opened for reading, read from front to back. Missing files, folders, pipes,
-/// missing permission and read errors are `Error`s that say which of them it was.
+/// A regular file opened for reading, from front to back or anywhere. Missing files, folders,
+/// pipes, missing permission and read errors are `Error`s that say which of them it was.
 class InputFile {
  public:
   explicit InputFile(std::filesystem::path path);
@@ -23,8 +23,12 @@ class InputFile {
   std::int64_t position() const { return position_; }
   /// Fills `bytes` and returns how many there were; fewer than asked only at the end of the file.
   std::size_t read(std::span<char> bytes);
+  /// The same from any place on, without moving. May be called by several threads at once.
+  std::size_t read_at(std::uint64_t offset, std::span<char> bytes) const;
 
  private:
+  [[noreturn]] void fail(std::uint64_t offset) const;
+
   std::filesystem::path path_;
   int descriptor_ = -1;
   std::int64_t size_ = 0;

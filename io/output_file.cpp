@@ -20,10 +20,19 @@ OutputFile::OutputFile(const std::filesystem::path& path)
 }
 
 void OutputFile::commit() {
+  close();
+  file_.commit();
+}
+
+void OutputFile::commit_unsynced() {
+  close();
+  file_.commit_unsynced();
+}
+
+void OutputFile::close() {
   flush();
   // Only the closing reports the last of the failures.
   if (std::fclose(stream_.release()) != 0) fail("cannot be written");
-  file_.commit();
 }
 
 void OutputFile::add(const char* bytes, std::size_t count) {

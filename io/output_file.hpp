@@ -44,6 +44,8 @@ class OutputFile {
 
   /// Gives the file its name; to be called last.
   void commit();
+  /// As AtomicFile::commit_unsynced.
+  void commit_unsynced();
 
  private:
   struct Close {
@@ -51,6 +53,7 @@ class OutputFile {
   };
   void add(const char* bytes, std::size_t count);
   void flush();
+  void close();
   [[noreturn]] void fail(const char* problem) const;
 
   AtomicFile file_;

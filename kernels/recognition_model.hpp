@@ -28,12 +28,4 @@ struct RecognitionModel {
   SurfaceSamples samples;
 };
 
-/// A triplet of a library, whose cell the library's index tells.
-struct Posting {
-  Invariants invariants = {};
-  std::uint32_t model = 0;
-  std::array<std::uint16_t, 3> corners = {};
-  friend bool operator==(const Posting&, const Posting&) = default;
-};
-
 }  // namespace semigeo::kernels

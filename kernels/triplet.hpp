@@ -34,23 +34,22 @@ struct OrientedFeatures {
 };
 inline constexpr std::size_t kMostFeatures = 65535;
 
-/// The cell of a triplet: what must be the same, or next to it. Geometry first, so that a range of
-/// cells is one of shapes, evenly filled whatever kinds of features there are.
-inline constexpr int kSecondRatioBins = 6;  ///< of middle / longest side, from 0.5 to 1
-inline constexpr int kThirdRatioBins = 10;  ///< of shortest / longest side, from 0.1 to 1
-inline constexpr int kScaleBins = 6;        ///< of log(longest side / sigma), from log 2.2
+/// The cell of a triplet: what must be the same, or next to it. cell = shape * kCodeTriples +
+/// codes. Geometry first, so that a range of cells is one of shapes, filled whatever kinds of
+/// features there are. Bins are as wide as what may match differs.
+inline constexpr int kSecondRatioBins = 7;  ///< of middle / longest side, from 0.5
+inline constexpr int kThirdRatioBins = 12;  ///< of shortest / longest side, from 0.08
+inline constexpr int kScaleBins = 8;        ///< of log(longest side / sigma), from log 2
 inline constexpr int kShapes = kSecondRatioBins * kThirdRatioBins * kScaleBins;
 inline constexpr int kCodeTriples = kFeatureCodes * kFeatureCodes * kFeatureCodes;
-inline constexpr int kTripletCells =
-    kShapes * kCodeTriples;  ///< cell = shape * kCodeTriples + codes
+inline constexpr int kTripletCells = kShapes * kCodeTriples;
 
-/// Numbers that no similarity changes, each scaled so that what may match differs by no more than
-/// its tolerance in `kInvariantTolerances`. Two side ratios, log(longest side / sigma), at each
-/// corner both curvatures, and at each corner the normal's share along the triangle's normal and
-/// along its longest side; the last one is the share of the first corner's along the height.
+/// Numbers that no similarity changes, as bytes: two side ratios, log(longest side / sigma), at
+/// each corner both curvatures, and the normals of the corners in the frame of the triangle. Of
+/// each normal there are the shares along the triangle's normal and along its longest side; of the
+/// third, along the height, the last byte has the signs.
 inline constexpr int kInvariants = 16;
 using Invariants = std::array<std::uint8_t, kInvariants>;
-extern const Invariants kInvariantTolerances;
 
 /// Three features of one level. Corner 0 lies opposite the longest side, corner 2 opposite the
 /// shortest.
@@ -72,13 +71,31 @@ struct TripletOptions {
 };
 
 /// The local oriented triplets of each level: every feature with pairs of its nearest neighbours.
-/// Each triangle once (or once an order), sorted by cell, then corners. Cost: O(n log n) for the
-/// neighbours and 45 triangles a feature at most. Thread-safe.
+/// Each triangle once (or once an order), sorted by cell, then corners. Cost: the square of a
+/// level's features for the neighbours, and 45 triangles a feature at most. Thread-safe.
 /// Source: thesis 4.5, step 2. Differs: local instead of all; normals and scale belong to the key.
 std::vector<Triplet> local_triplets(const OrientedFeatures& features,
                                     const TripletOptions& options);
 
-/// A cell and the shapes next to it, with the same codes: where all that may match lies.
+/// A cell and the shapes next to it, with the same codes: where all that may match lies. Ascending.
 std::vector<std::uint32_t> cells_around(std::uint32_t cell);
+
+/// Whether two triplets of cells next to each other may be the same one, seen twice: side ratios
+/// within 0.09, log scale within 0.35, curvatures at each corner within 0.25 + 0.35 of their size,
+/// normals within 30 degrees under the rotation that the triangles fix.
+bool compatible(const Invariants& a, const Invariants& b);
+
+/// A triplet of a library, whose cell the library's index tells.
+struct Posting {
+  Invariants invariants = {};
+  std::uint32_t model = 0;
+  std::array<std::uint16_t, 3> corners = {};
+  friend bool operator==(const Posting&, const Posting&) = default;
+};
+
+/// Appends to `found` which of the postings are compatible, ascending. Bytes are compared 16 at a
+/// time, 1 ns a posting; only what passes is looked at again.
+void find_compatible(const Invariants& wanted, std::span<const Posting> postings,
+                     std::vector<std::uint32_t>& found);
 
 }  // namespace semigeo::kernels

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "kernels/similarity.hpp"
 #include "kernels/surface.hpp"
 #include "kernels/triangle_mesh.hpp"
 
@@ -33,22 +34,10 @@ struct ChangeOptions {
   std::uint64_t seed = 1;
 };
 
-/// x -> scale * rotation * x + shift.
-struct Similarity {
-  double scale = 1;
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();
-
-  Eigen::Vector3d apply(const Eigen::Vector3d& p) const { return scale * (rotation * p) + shift; }
-  Eigen::Vector3d undo(const Eigen::Vector3d& p) const {
-    return rotation.transpose() * (p - shift) / scale;
-  }
-};
-
 struct ChangedMesh {
   kernels::TriangleMesh mesh;
-  Similarity similarity;  ///< from the original to `mesh`
-  double area = 0;        ///< before noise, in the original's units
+  kernels::Similarity similarity;  ///< from the original to `mesh`
+  double area = 0;                 ///< before noise, in the original's units
   /// In the original's frame: what lies on its negative side is cut away.
   std::optional<Eigen::Hyperplane<double, 3>> cut;
 };

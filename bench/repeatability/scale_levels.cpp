@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "bench/support/chance.hpp"
 #include "jobs/stages/level_features.hpp"
 #include "kernels/vertex_order.hpp"
 
@@ -31,22 +32,23 @@ bool strong(FeatureKind kind, const Feature& feature) {
 }
 
 FeaturesByKind placed(const kernels::LevelFeatures& features, const Eigen::Vector3d& origin,
-                      const Similarity& similarity, bool only_strong) {
+                      const kernels::Similarity& similarity, bool only_strong) {
   FeaturesByKind result;
   for (int kind = 0; kind < kernels::kFeatureKinds; ++kind)
     for (const Feature& feature : features.of_kind[kind])
       if (!only_strong || strong(static_cast<FeatureKind>(kind), feature))
-        result[kind].push_back({similarity.undo(feature.initial_position.cast<double>() + origin),
-                                feature.value > 0, feature.prominence});
+        result[kind].push_back(
+            {bench::undo(similarity, feature.initial_position.cast<double>() + origin),
+             feature.value > 0, feature.prominence});
   return result;
 }
 
 }  // namespace
 
 std::vector<ScaleLevel> scale_levels(const kernels::BuiltSurface& built,
-                                     const Similarity& similarity, const FeatureSearch& search,
-                                     int levels, double last_scale, int max_levels,
-                                     const engine::RunContext& context) {
+                                     const kernels::Similarity& similarity,
+                                     const FeatureSearch& search, int levels, double last_scale,
+                                     int max_levels, const engine::RunContext& context) {
   std::vector<std::int32_t> order = kernels::locality_order(built.surface);
   kernels::Surface ordered = kernels::reordered(built.surface, order);
   jobs::EvolvingSurface surface(

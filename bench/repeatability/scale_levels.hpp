@@ -9,6 +9,7 @@
 #include "engine/run_context.hpp"
 #include "jobs/stages/evolving_surface.hpp"
 #include "kernels/features.hpp"
+#include "kernels/similarity.hpp"
 #include "kernels/surface_builder.hpp"
 
 namespace semigeo::repeatability {
@@ -36,8 +37,8 @@ struct FeatureSearch {
 /// Goes on until there are `levels` levels and the scale of the last is at least `last_scale`, but
 /// no longer than `max_levels`, or until the surface vanishes. `similarity` is undone.
 std::vector<ScaleLevel> scale_levels(const kernels::BuiltSurface& built,
-                                     const Similarity& similarity, const FeatureSearch& search,
-                                     int levels, double last_scale, int max_levels,
-                                     const engine::RunContext& context);
+                                     const kernels::Similarity& similarity,
+                                     const FeatureSearch& search, int levels, double last_scale,
+                                     int max_levels, const engine::RunContext& context);
 
 }  // namespace semigeo::repeatability

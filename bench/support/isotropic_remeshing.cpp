@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bench/support/edit_mesh.hpp"
+#include "bench/support/mesh_changes.hpp"
 #include "kernels/nearest_surface.hpp"
 
 namespace semigeo::bench {
@@ -26,18 +27,10 @@ constexpr double kShortest = 4.0 / 5;
 /// Cosine of how far a face may turn in a collapse or a flip.
 constexpr double kMaxTurn = 0.5;
 
-kernels::TriangleMesh mesh_of(const kernels::Surface& surface) {
-  kernels::TriangleMesh mesh;
-  mesh.triangles = surface.triangles;
-  mesh.points.reserve(surface.points.size());
-  for (const auto& p : surface.points) mesh.points.push_back(p.cast<double>());
-  return mesh;
-}
-
 class IsotropicRemesher {
  public:
   explicit IsotropicRemesher(const kernels::Surface& surface)
-      : mesh_(edit_mesh(mesh_of(surface))), nearest_(surface) {}
+      : mesh_(edit_mesh(triangle_mesh(surface))), nearest_(surface) {}
 
   kernels::TriangleMesh remeshed(std::int64_t vertices) {
     double area = 0;

@@ -6,7 +6,7 @@ from collections import defaultdict
 
 import numpy as np
 
-from support import SemigeoTest, icosphere, plane, write_ply
+from support import SemigeoTest, boulder, plane, write_ply
 
 COLUMNS = (
     "mesh,case,kind,level,radius,mean_edge_length,scale,changed_level,changed_scale,features,"
@@ -16,15 +16,6 @@ COLUMNS = (
 CASES = ("identity,rotated,decimated,decimated+noise,resampled,resampled+noise,noise,cut,"
          "decimated+cut").split(",")
 KINDS = "gaussian,mean,gaussian_torsion,mean_torsion".split(",")
-
-
-def boulder():
-    """A sphere with bumps and dents."""
-    points, triangles = icosphere(3)
-    centres = np.random.default_rng(5).normal(size=(24, 3))
-    centres /= np.linalg.norm(centres, axis=1)[:, None]
-    near = np.exp(12 * (points @ centres.T - 1))
-    return points * (1 + near @ np.tile([0.15, -0.1], 12))[:, None], triangles
 
 
 class RepeatabilityTest(SemigeoTest):
@@ -45,7 +36,7 @@ class RepeatabilityTest(SemigeoTest):
                          if r["kind"] in KINDS[:2] and r["radius"] == "1" and r["level"] == "1"])
 
     def test_the_same_mesh_has_the_same_features_and_others_most_of_them(self):
-        path = write_ply(self.scans / "boulder.ply", boulder())
+        path = write_ply(self.scans / "boulder.ply", boulder(3, 5))
         cases = self.measure(path, "--closed", "--levels", 1)
         self.assertEqual(list(cases), CASES)
         for name, rows in cases.items():
@@ -73,7 +64,7 @@ class RepeatabilityTest(SemigeoTest):
                 self.assertRegex(self.process.stdout, rf"(?m)^{kind} +{level} \| +(100|-) \(")
 
     def test_results_repeat_on_any_number_of_threads_and_follow_the_seed(self):
-        path = write_ply(self.scans / "boulder.ply", boulder())
+        path = write_ply(self.scans / "boulder.ply", boulder(3, 5))
         arguments = (path, "--levels", 0, "--cases", "decimated+noise", "--strong")
         texts = []
         for more in (("--threads", 1), ("--threads", 2), ("--seed", 2)):

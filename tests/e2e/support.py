@@ -88,6 +88,15 @@ def icosphere(levels, radius=1.0):
     return radius * points, triangles
 
 
+def boulder(levels, seed):
+    """A sphere with bumps and dents."""
+    points, triangles = icosphere(levels)
+    centres = np.random.default_rng(seed).normal(size=(24, 3))
+    centres /= np.linalg.norm(centres, axis=1)[:, None]
+    near = np.exp(12 * (points @ centres.T - 1))
+    return points * (1 + near @ np.tile([0.15, -0.1], 12))[:, None], triangles
+
+
 def plane(cells):
     """An open square of cells x cells, slightly bent."""
     i, j = np.divmod(np.arange((cells + 1) ** 2), cells + 1)

@@ -174,6 +174,34 @@ TEST(Hdf5, EveryChunkMustBeThere) {
   EXPECT_THROW(file.write_array("/a", array), std::invalid_argument);
 }
 
+TEST(Hdf5, ArraysGrowBesideOneAnotherWhetherCompactOrNot) {
+  const tests::TemporaryFolder folder;
+  const std::vector<float> values(100000, 0.5F);
+  const EncodedArray large = encode(values);
+  const EncodedArray small = encode({1, 2, 3});
+  ASSERT_TRUE(!large.shape.compact && large.chunks.size() == 2 && small.shape.compact);
+  Hdf5File file = Hdf5File::create(folder / "a.h5");
+  Hdf5File::Growing chunked = file.begin_array("/chunked", large.shape);
+  Hdf5File::Growing compact = file.begin_array("/compact", small.shape);
+  chunked.write_chunk(large.chunks[0]);
+  EXPECT_THROW(compact.close(), std::invalid_argument) << "it has no rows";
+  compact.write_chunk(small.chunks[0]);
+  EXPECT_THROW(compact.write_chunk(small.chunks[0]), std::invalid_argument);
+  chunked.write_chunk(large.chunks[1]);
+  compact.close();
+  chunked.close();
+  EXPECT_EQ(read_floats(file, "/compact", 1), (std::vector<float>{1, 2, 3}));
+  EXPECT_EQ(read_floats(file, "/chunked", 1), values);
+  Hdf5File::Growing torn = file.begin_array("/torn", small.shape);
+  EXPECT_THROW(torn.write_chunk({.bytes = std::vector<std::byte>(8)}), std::invalid_argument);
+  file.close();
+
+  const Hdf5File read = Hdf5File::open(folder / "a.h5");
+  EXPECT_TRUE(read.shape_of("/compact").compact);
+  EXPECT_EQ(read_floats(read, "/compact", 1), (std::vector<float>{1, 2, 3}));
+  EXPECT_EQ(read_floats(read, "/chunked", 1), values);
+}
+
 TEST(Hdf5, PromisesWithoutBytesAllocateNothing) {
   const tests::TemporaryFolder folder;
   const EncodedArray honest = encode(std::vector<float>(60000, 1));

@@ -1,0 +1,100 @@
+#include "bench/recognition/bench_model.hpp"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "bench/support/mesh_changes.hpp"
+#include "bench/support/quadric_decimation.hpp"
+#include "io/error.hpp"
+#include "io/scan_reader.hpp"
+
+namespace semigeo::recognition {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_closed(const kernels::Surface& surface) {
+  for (std::int32_t v = 0; v < surface.vertex_count(); ++v)
+    if (surface.on_boundary(v)) return false;
+  return true;
+}
+
+std::vector<fs::path> scan_files(const std::vector<fs::path>& places) {
+  std::vector<fs::path> files;
+  for (const fs::path& place : places) {
+    if (!fs::is_directory(place)) {
+      files.push_back(place);
+      continue;
+    }
+    std::vector<fs::path> found;
+    for (const auto& entry : fs::recursive_directory_iterator(place))
+      if (entry.is_regular_file() && io::scan_format(entry.path())) found.push_back(entry.path());
+    std::ranges::sort(found);
+    files.insert(files.end(), found.begin(), found.end());
+  }
+  return files;
+}
+
+kernels::TriangleMesh file_mesh(const kernels::BuiltSurface& built) {
+  kernels::TriangleMesh mesh = bench::triangle_mesh(built.surface);
+  for (Eigen::Vector3d& p : mesh.points) p += built.origin;
+  return mesh;
+}
+
+std::string stem_of(fs::path path) {
+  if (path.extension() == ".gz") path = path.stem();
+  return path.stem().string();
+}
+
+}  // namespace
+
+kernels::TriangleMesh repaired(kernels::TriangleMesh mesh, std::int64_t most_vertices) {
+  const kernels::BuiltSurface built = kernels::build_surface(std::move(mesh));
+  kernels::TriangleMesh result = file_mesh(built);
+  if (most_vertices > 0 && built.surface.vertex_count() > most_vertices)
+    result = bench::quadric_decimated(result, most_vertices);
+  return result;
+}
+
+std::unique_ptr<BenchModel> make_model(std::string name, kernels::TriangleMesh mesh,
+                                       std::int64_t most_vertices) {
+  auto model = std::make_unique<BenchModel>();
+  model->name = std::move(name);
+  model->built = kernels::build_surface(repaired(std::move(mesh), most_vertices));
+  if (model->built.surface.face_count() == 0) return nullptr;
+  model->mesh = file_mesh(model->built);
+  const Eigen::AlignedBox3d box = bench::bounding_box(model->mesh);
+  model->centre = box.center();
+  model->diagonal = box.diagonal().norm();
+  model->nearest = std::make_unique<kernels::NearestSurface>(model->built.surface);
+  return model;
+}
+
+BenchModels read_models(const ModelChoice& choice, std::vector<SkippedModel>& skipped) {
+  BenchModels models;
+  std::map<std::string, int> stems;
+  for (const fs::path& path : scan_files(choice.places)) {
+    if (choice.most_models > 0 && std::ssize(models) >= choice.most_models) break;
+    try {
+      kernels::TriangleMesh mesh = io::read_scan(path).mesh;
+      if (!is_closed(kernels::build_surface(kernels::TriangleMesh(mesh)).surface)) {
+        skipped.push_back({path, "it has a boundary"});
+        continue;
+      }
+      std::string name = stem_of(path);
+      if (const int again = stems[name]++; again > 0) name += "_" + std::to_string(again + 1);
+      auto model = make_model(std::move(name), std::move(mesh), choice.most_vertices);
+      if (model)
+        models.push_back(std::move(model));
+      else
+        skipped.push_back({path, "no face is left after repair"});
+    } catch (const std::runtime_error& e) {
+      skipped.push_back({path, e.what()});
+    }
+  }
+  return models;
+}
+
+}  // namespace semigeo::recognition

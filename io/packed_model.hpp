@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kernels/recognition_model.hpp"
+
+namespace semigeo::io {
+
+/// A recognition model with its tables as they are stored: io/LIBRARY.md.
+struct PackedModel {
+  std::string name;
+  std::string digest;
+  std::string length_unit;
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  Eigen::Vector3f centre = Eigen::Vector3f::Zero();
+  float diagonal = 0;
+  float sample_spacing = 0;
+  std::vector<float> level_scales;
+  std::vector<std::byte> features;        ///< records of ElementType::oriented_feature
+  std::vector<std::byte> sample_points;   ///< float32 (samples, 3)
+  std::vector<std::byte> sample_normals;  ///< PackedNormal of each
+
+  std::int64_t feature_count() const;
+  std::int64_t sample_count() const;
+};
+
+inline constexpr std::size_t kOrientedFeatureBytes = 38;
+inline constexpr std::size_t kSamplePointBytes = 12;
+inline constexpr std::size_t kSampleNormalBytes = 4;
+inline constexpr int kMostModelLevels = 256;  ///< a feature's level is one byte
+
+PackedModel pack_model(const kernels::RecognitionModel& model);
+kernels::RecognitionModel unpack_model(const PackedModel& model);
+
+/// What is wrong with a model ("has a feature of no kind or level"), if anything: whatever was
+/// stored, what has no problem can be recognised.
+std::optional<std::string> problem_of(const PackedModel& model);
+/// The same of records of features alone.
+std::optional<std::string> problem_of_features(std::span<const std::byte> records,
+                                               std::size_t levels);
+std::optional<std::string> problem_of_floats(std::span<const std::byte> floats);
+
+}  // namespace semigeo::io

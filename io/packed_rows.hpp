@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <span>
+#include <vector>
+
+namespace semigeo::io {
+
+/// The values of packed rows of `stride` bytes, each the beginning of a Value in memory.
+template <typename Value>
+std::vector<Value> unpacked(std::span<const std::byte> rows, std::size_t stride = sizeof(Value)) {
+  std::vector<Value> values(rows.size() / stride);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    std::memcpy(static_cast<void*>(&values[i]), rows.data() + i * stride, stride);
+  return values;
+}
+
+/// The other way round.
+template <typename Value>
+std::vector<std::byte> packed(std::span<const Value> values, std::size_t stride = sizeof(Value)) {
+  std::vector<std::byte> rows(values.size() * stride);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    std::memcpy(rows.data() + i * stride, &values[i], stride);
+  return rows;
+}
+
+}  // namespace semigeo::io

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "kernels/triplet.hpp"
+
+namespace semigeo::io {
+
+/// Shapes first, ..., end - 1: cells first * kCodeTriples, ..., end * kCodeTriples - 1.
+struct ShapeRange {
+  int first = 0;
+  int end = kernels::kShapes;
+
+  std::uint32_t first_cell() const {
+    return static_cast<std::uint32_t>(first) * kernels::kCodeTriples;
+  }
+  std::uint32_t end_cell() const { return static_cast<std::uint32_t>(end) * kernels::kCodeTriples; }
+  friend bool operator==(const ShapeRange&, const ShapeRange&) = default;
+};
+
+}  // namespace semigeo::io

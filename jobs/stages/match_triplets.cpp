@@ -1,0 +1,188 @@
+#include "jobs/stages/match_triplets.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <span>
+#include <utility>
+
+namespace semigeo::jobs {
+namespace {
+
+using kernels::Posting;
+using kernels::Triplet;
+
+/// So many postings stay in the first-level cache while all that looks for them passes.
+constexpr std::int64_t kTile = 512;
+
+/// Numbers of the triangles that triplets are, in whatever order of corners.
+std::vector<std::uint32_t> triangles_of(const std::vector<Triplet>& triplets) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> sorted;
+  sorted.reserve(triplets.size());
+  for (const Triplet& triplet : triplets) {
+    std::array<std::uint16_t, 3> corners = triplet.corners;
+    std::ranges::sort(corners);
+    std::uint64_t packed = 0;
+    for (const std::uint16_t corner : corners) packed = packed << 16 | corner;
+    sorted.emplace_back(packed, static_cast<std::uint32_t>(sorted.size()));
+  }
+  std::ranges::sort(sorted);
+  std::vector<std::uint32_t> numbers(triplets.size());
+  std::uint32_t number = 0;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    if (i > 0 && sorted[i].first != sorted[i - 1].first) ++number;
+    numbers[sorted[i].second] = number;
+  }
+  return numbers;
+}
+
+/// In [0, 1), evenly spread whatever the numbers are (Weyl's sequence, golden ratio).
+double lot_of(std::uint32_t triangle) {
+  return static_cast<double>(triangle * 2654435769U) / 4294967296.0;
+}
+
+/// A triplet of the scene in a cell where it looks for others.
+struct Lookup {
+  std::uint32_t cell;
+  std::uint32_t triplet;
+  friend auto operator<=>(const Lookup&, const Lookup&) = default;
+};
+
+/// Lookups of one cell in one block of postings.
+struct Segment {
+  std::int64_t block;
+  std::int64_t first_posting;  ///< within the block
+  std::int64_t last_posting;
+  std::size_t first_lookup;
+  std::size_t last_lookup;
+};
+
+class Matcher {
+ public:
+  Matcher(const io::HashLibrary& library, const std::vector<Triplet>& scene)
+      : library_(library),
+        cells_(library.cells()),
+        scene_(scene),
+        triangles_(triangles_of(scene)) {}
+
+  TripletMatches run(std::int64_t most_compared, const engine::RunContext& context) {
+    look_up(1);
+    if (const std::int64_t all = comparisons(); all > most_compared)
+      look_up(static_cast<double>(most_compared) / static_cast<double>(all));
+    cut_into_blocks();
+    std::vector<std::vector<TripletMatch>> found(blocks_.size());
+    context.workers.for_blocks(static_cast<std::int64_t>(blocks_.size()), 1,
+                               [&](engine::IndexRange range) {
+                                 for (auto i = range.begin; i < range.end; ++i)
+                                   compare_block(blocks_[i], found[i]);
+                               });
+    return gathered(found);
+  }
+
+ private:
+  void look_up(double share) {
+    lookups_.clear();
+    for (std::uint32_t i = 0; i < scene_.size(); ++i) {
+      if (share < 1 && lot_of(triangles_[i]) >= share) continue;
+      for (const std::uint32_t cell : kernels::cells_around(scene_[i].cell))
+        if (cells_[cell] < cells_[cell + 1]) lookups_.push_back({cell, i});
+    }
+    std::ranges::sort(lookups_);
+  }
+
+  std::int64_t comparisons() const {
+    std::int64_t sum = 0;
+    for (const Lookup& lookup : lookups_)
+      sum += static_cast<std::int64_t>(cells_[lookup.cell + 1] - cells_[lookup.cell]);
+    return sum;
+  }
+
+  void cut_into_blocks() {
+    const std::int64_t size = library_.block_size();
+    for (std::size_t first = 0; first < lookups_.size();) {
+      const std::uint32_t cell = lookups_[first].cell;
+      std::size_t last = first;
+      while (last < lookups_.size() && lookups_[last].cell == cell) ++last;
+      const auto end = static_cast<std::int64_t>(cells_[cell + 1]);
+      for (auto at = static_cast<std::int64_t>(cells_[cell]); at < end;) {
+        const std::int64_t block = at / size;
+        const std::int64_t until = std::min(end, (block + 1) * size);
+        if (blocks_.empty() || segments_[blocks_.back().first].block != block)
+          blocks_.emplace_back(segments_.size(), segments_.size());
+        segments_.push_back({block, at - block * size, until - block * size, first, last});
+        blocks_.back().second = segments_.size();
+        at = until;
+      }
+      first = last;
+    }
+  }
+
+  void compare_block(const std::pair<std::size_t, std::size_t>& segments,
+                     std::vector<TripletMatch>& found) const {
+    const std::vector<Posting> postings = library_.read_block(segments_[segments.first].block);
+    std::vector<std::uint32_t> compatible;
+    for (std::size_t s = segments.first; s < segments.second; ++s) {
+      const Segment& segment = segments_[s];
+      for (std::int64_t tile = segment.first_posting; tile < segment.last_posting; tile += kTile) {
+        const std::int64_t end = std::min(segment.last_posting, tile + kTile);
+        const auto some = std::span(postings).subspan(tile, end - tile);
+        for (std::size_t l = segment.first_lookup; l < segment.last_lookup; ++l)
+          compare(lookups_[l].triplet, some, compatible, found);
+      }
+    }
+  }
+
+  void compare(std::uint32_t index, std::span<const Posting> postings,
+               std::vector<std::uint32_t>& compatible, std::vector<TripletMatch>& found) const {
+    const Triplet& triplet = scene_[index];
+    compatible.clear();
+    kernels::find_compatible(triplet.invariants, postings, compatible);
+    for (const std::uint32_t i : compatible)
+      found.push_back({.triangle = triangles_[index],
+                       .model = postings[i].model,
+                       .scene_corners = triplet.corners,
+                       .model_corners = postings[i].corners});
+  }
+
+  TripletMatches gathered(const std::vector<std::vector<TripletMatch>>& found) const {
+    TripletMatches result;
+    result.scene_triplets = static_cast<std::int64_t>(scene_.size());
+    result.compared = comparisons();
+    const std::size_t models = library_.models().size();
+    result.first.assign(models + 1, 0);
+    std::vector<std::uint32_t> of_triangle(scene_.size());  // no more triangles than triplets
+    for (const auto& block : found)
+      for (const TripletMatch& match : block) {
+        ++result.first[match.model + 1];
+        ++of_triangle[match.triangle];
+      }
+    std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
+    result.matches.resize(result.first.back());
+    result.votes.assign(models, 0);
+    std::vector<std::int64_t> next(result.first.begin(), result.first.end() - 1);
+    for (const auto& block : found)
+      for (const TripletMatch& match : block) {
+        TripletMatch& placed = result.matches[next[match.model]++];
+        placed = match;
+        placed.weight = 1.0F / static_cast<float>(of_triangle[match.triangle]);
+        result.votes[match.model] += placed.weight;
+      }
+    return result;
+  }
+
+  const io::HashLibrary& library_;
+  std::span<const std::uint64_t> cells_;
+  const std::vector<Triplet>& scene_;
+  std::vector<std::uint32_t> triangles_;
+  std::vector<Lookup> lookups_;
+  std::vector<Segment> segments_;
+  std::vector<std::pair<std::size_t, std::size_t>> blocks_;  ///< ranges of segments
+};
+
+}  // namespace
+
+TripletMatches match_triplets(const io::HashLibrary& library, const std::vector<Triplet>& scene,
+                              std::int64_t most_compared, const engine::RunContext& context) {
+  return Matcher(library, scene).run(most_compared, context);
+}
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "engine/run_context.hpp"
+#include "io/hash_library.hpp"
+#include "kernels/triplet.hpp"
+
+namespace semigeo::jobs {
+
+/// A triplet of a scene that may be one of a model.
+struct TripletMatch {
+  std::uint32_t triangle = 0;                       ///< of the scene, in whatever order of corners
+  std::uint32_t model = 0;                          ///< of HashLibrary::models
+  std::array<std::uint16_t, 3> scene_corners = {};  ///< features, corner by corner
+  std::array<std::uint16_t, 3> model_corners = {};
+  float weight = 0;  ///< 1 / number of matches of the triangle
+};
+
+struct TripletMatches {
+  std::vector<TripletMatch> matches;  ///< by model, then as in the library
+  std::vector<std::int64_t> first;    ///< (models + 1) first match of each model
+  std::vector<double> votes;          ///< (models) weights together
+  std::int64_t scene_triplets = 0;
+  std::int64_t compared = 0;  ///< pairs of triplets that were looked at
+};
+
+/// Looks up the triplets of a scene. Reads only the blocks of the library in which something may
+/// match, each once. If that would mean comparing more than `most_compared` pairs, an even share of
+/// the scene's triangles is looked up. Does not depend on the number of threads.
+/// Source: thesis 4.5, step 4.
+TripletMatches match_triplets(const io::HashLibrary& library,
+                              const std::vector<kernels::Triplet>& scene,
+                              std::int64_t most_compared, const engine::RunContext& context);
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,227 @@
+#include "jobs/stages/recognise_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "jobs/stages/match_triplets.hpp"
+#include "kernels/feature_triangle.hpp"
+#include "kernels/overlap.hpp"
+#include "kernels/pose_clusters.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+using Eigen::Vector3d;
+using kernels::RecognitionModel;
+using kernels::Similarity;
+
+/// A scene's feature may be a little out of the band that the model's is in.
+constexpr double kBandSlack = 1.075;
+constexpr std::int64_t kMostCompared = 3'000'000'000;
+constexpr std::size_t kShortlist = 200;      ///< models with the most votes
+constexpr std::size_t kMostMatches = 20000;  ///< of one model, the weightiest
+constexpr std::int64_t kCoarseSamples = 150;
+constexpr std::size_t kRefinedPerModel = 6;
+constexpr std::size_t kRefinedTogether = 150;
+constexpr std::int64_t kFineSamples = 2000;
+
+kernels::TripletOptions scene_triplets() {
+  kernels::TripletOptions options;
+  options.nearest /= kBandSlack;
+  options.farthest *= kBandSlack;
+  options.min_height *= 0.9;
+  options.every_order = true;
+  return options;
+}
+
+/// A pose of a model, more and more closely looked at. Poses are from the model's own coordinates
+/// to the scene's, origins apart.
+struct Pose {
+  std::size_t listed = 0;  ///< in the shortlist
+  Similarity pose;
+  double cluster = 0;
+  double coarse = 0;
+  kernels::Overlap overlap = {};
+  double explained = 0;
+  double score = 0;
+};
+
+struct Listed {
+  std::int64_t model = 0;
+  RecognitionModel record;
+  std::optional<kernels::SampleTree> tree;
+  std::vector<Pose> poses;
+};
+
+class Recogniser {
+ public:
+  Recogniser(const io::HashLibrary& library, const RecognitionModel& scene,
+             const RecognitionOptions& options, const engine::RunContext& context)
+      : library_(library),
+        scene_(scene),
+        options_(options),
+        context_(context),
+        tree_(scene.samples) {}
+
+  Recognition run() {
+    const std::vector<kernels::Triplet> triplets =
+        kernels::local_triplets(scene_.features, scene_triplets());
+    matches_ = match_triplets(library_, triplets, kMostCompared, context_);
+    result_.scene_triplets = matches_.scene_triplets;
+    result_.matches = static_cast<std::int64_t>(matches_.matches.size());
+    shortlist();
+    for_each(shortlist_.size(), [this](std::size_t i) { find_poses(i); });
+    choose_poses();
+    for_each(poses_.size(), [this](std::size_t i) { verify(poses_[i]); });
+    rank();
+    find_objects();
+    return std::move(result_);
+  }
+
+ private:
+  template <typename Body>
+  void for_each(std::size_t count, const Body& body) {
+    context_.workers.for_blocks(static_cast<std::int64_t>(count), 1, [&](engine::IndexRange range) {
+      for (auto i = range.begin; i < range.end; ++i) body(static_cast<std::size_t>(i));
+    });
+  }
+
+  /// Models that got votes, those with the most first.
+  void shortlist() {
+    std::vector<std::int64_t> order;
+    for (std::size_t i = 0; i < matches_.votes.size(); ++i)
+      if (matches_.votes[i] > 0) order.push_back(static_cast<std::int64_t>(i));
+    std::ranges::stable_sort(order, std::ranges::greater(),
+                             [this](std::int64_t i) { return matches_.votes[i]; });
+    order.resize(std::min(order.size(), kShortlist));
+    shortlist_.resize(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) shortlist_[i].model = order[i];
+  }
+
+  void find_poses(std::size_t index) {
+    Listed& listed = shortlist_[index];
+    listed.record = library_.read_model(listed.model);
+    const RecognitionModel& model = listed.record;
+    std::vector<TripletMatch> matches(matches_.matches.begin() + matches_.first[listed.model],
+                                      matches_.matches.begin() + matches_.first[listed.model + 1]);
+    if (matches.size() > kMostMatches) {
+      std::ranges::stable_sort(matches, std::ranges::greater(), &TripletMatch::weight);
+      matches.resize(kMostMatches);
+    }
+    std::vector<kernels::PoseVote> votes;
+    votes.reserve(matches.size());
+    for (const TripletMatch& match : matches)
+      votes.push_back({kernels::similarity_between(
+                           kernels::feature_triangle(model.features, match.model_corners),
+                           kernels::feature_triangle(scene_.features, match.scene_corners)),
+                       match.weight});
+    for (const kernels::PoseCluster& cluster :
+         kernels::pose_clusters(votes, model.centre.cast<double>(), model.diagonal, {})) {
+      Pose pose{.listed = index, .pose = cluster.pose, .cluster = cluster.weight};
+      pose.coarse =
+          kernels::overlap(model.samples, model.diagonal, pose.pose, tree_,
+                           {.match = 0.02, .conflict = 0.06, .min_cosine = 0.6}, kCoarseSamples)
+              .agreement();
+      if (pose.coarse > 0) listed.poses.push_back(pose);
+    }
+    std::ranges::stable_sort(listed.poses, std::ranges::greater(), &Pose::coarse);
+    listed.poses.resize(std::min(listed.poses.size(), kRefinedPerModel));
+  }
+
+  void choose_poses() {
+    for (Listed& listed : shortlist_)
+      poses_.insert(poses_.end(), listed.poses.begin(), listed.poses.end());
+    std::ranges::stable_sort(poses_, std::ranges::greater(), &Pose::coarse);
+    poses_.resize(std::min(poses_.size(), kRefinedTogether));
+    std::vector<std::uint8_t> wanted(shortlist_.size());
+    for (const Pose& pose : poses_) wanted[pose.listed] = 1;
+    for_each(shortlist_.size(), [&](std::size_t i) {
+      if (wanted[i] != 0) shortlist_[i].tree.emplace(shortlist_[i].record.samples);
+    });
+  }
+
+  void verify(Pose& pose) const {
+    const RecognitionModel& model = shortlist_[pose.listed].record;
+    pose.pose = kernels::refined(model.samples, model.diagonal, pose.pose, tree_, {});
+    measure(pose, {});
+  }
+
+  /// Against what of the scene is not used up yet.
+  void measure(Pose& pose, std::span<const std::uint8_t> used) const {
+    const Listed& listed = shortlist_[pose.listed];
+    const RecognitionModel& model = listed.record;
+    pose.overlap =
+        kernels::overlap(model.samples, model.diagonal, pose.pose, tree_, {}, kFineSamples, used);
+    const auto marks =
+        kernels::explained(*listed.tree, model.diagonal, pose.pose, scene_.samples, {}, used);
+    pose.explained = static_cast<double>(std::ranges::count(marks, 1)) /
+                     static_cast<double>(std::max<std::size_t>(marks.size(), 1));
+    pose.score = pose.overlap.agreement() * std::sqrt(pose.explained);
+  }
+
+  Candidate candidate_of(const Pose& pose) const {
+    const Listed& listed = shortlist_[pose.listed];
+    Candidate candidate;
+    candidate.model = listed.model;
+    candidate.votes = matches_.votes[listed.model];
+    candidate.cluster = pose.cluster;
+    candidate.match = pose.overlap.match;
+    candidate.conflict = pose.overlap.conflict;
+    candidate.explained = pose.explained;
+    candidate.score = pose.score;
+    const Similarity from_file = {.translation = -listed.record.origin};
+    const Similarity to_file = {.translation = scene_.origin};
+    candidate.pose = to_file * pose.pose * from_file;
+    return candidate;
+  }
+
+  void rank() {
+    std::ranges::stable_sort(poses_, std::ranges::greater(), &Pose::score);
+    std::vector<std::uint8_t> seen(shortlist_.size());
+    for (const Pose& pose : poses_)
+      if (std::exchange(seen[pose.listed], 1) == 0) result_.ranking.push_back(candidate_of(pose));
+  }
+
+  /// The best first; then the best on what it leaves unexplained, and so on.
+  void find_objects() {
+    std::vector<std::uint8_t> used(scene_.samples.points.size());
+    std::vector<Pose> left = poses_;
+    while (true) {
+      std::erase_if(left, [this](const Pose& pose) { return pose.score < options_.min_score; });
+      if (left.empty() || left.front().score <= 0) return;
+      const Pose best = left.front();
+      result_.objects.push_back(candidate_of(best));
+      if (!options_.all_copies) return;
+      const Listed& listed = shortlist_[best.listed];
+      // A little more than what matches: rims of what is explained are nobody else's.
+      const auto marks = kernels::explained(*listed.tree, listed.record.diagonal, best.pose,
+                                            scene_.samples, {.match = 0.02, .min_cosine = 0.3});
+      for (std::size_t i = 0; i < marks.size(); ++i) used[i] |= marks[i];
+      left.erase(left.begin());
+      for_each(left.size(), [&](std::size_t i) { measure(left[i], used); });
+      std::ranges::stable_sort(left, std::ranges::greater(), &Pose::score);
+    }
+  }
+
+  const io::HashLibrary& library_;
+  const RecognitionModel& scene_;
+  const RecognitionOptions& options_;
+  const engine::RunContext& context_;
+  kernels::SampleTree tree_;
+  TripletMatches matches_;
+  std::vector<Listed> shortlist_;
+  std::vector<Pose> poses_;
+  Recognition result_;
+};
+
+}  // namespace
+
+Recognition recognise_scene(const io::HashLibrary& library, const RecognitionModel& scene,
+                            const RecognitionOptions& options, const engine::RunContext& context) {
+  return Recogniser(library, scene, options, context).run();
+}
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,198 @@
+#include "jobs/stages/recognition_features.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "jobs/config.hpp"
+#include "jobs/stages/evolving_surface.hpp"
+#include "jobs/stages/level_features.hpp"
+#include "kernels/surface_samples.hpp"
+#include "kernels/vertex_order.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+using Eigen::Vector3f;
+using kernels::Feature;
+using kernels::FeatureKind;
+using kernels::OrientedFeature;
+
+/// What is weaker than this comes and goes with noise and triangulation.
+constexpr float kMinScaleFree = 0.1F;  // |H| sigma, and sqrt(|K|) sigma
+
+constexpr EvolutionOptions kOctaves = {.schedule = Schedule::octaves, .rescale = Rescale::none};
+
+OrientedFeature oriented(const Feature& feature, FeatureKind kind, int level, float sigma) {
+  OrientedFeature result;
+  result.position = feature.initial_position;
+  result.normal = feature.normal;
+  result.scale_free_gaussian = feature.scale_free_gaussian;
+  result.scale_free_mean = feature.scale_free_mean;
+  result.value = feature.value * sigma * (kind == FeatureKind::gaussian ? sigma : 1);
+  result.code = kernels::feature_code(kind, feature.value > 0);
+  result.level = static_cast<std::uint8_t>(level);
+  return result;
+}
+
+float strength(const OrientedFeature& feature, FeatureKind kind) {
+  switch (kind) {
+    case FeatureKind::gaussian:
+      return std::abs(feature.scale_free_gaussian);
+    case FeatureKind::mean:
+      return std::abs(feature.scale_free_mean);
+    case FeatureKind::gaussian_torsion:
+    case FeatureKind::mean_torsion:
+      break;
+  }
+  return std::abs(feature.value);
+}
+
+/// The strongest of one kind, in the order in which they were.
+void add_strongest(const std::vector<Feature>& features, FeatureKind kind, int level, double scale,
+                   const RecognitionParameters& parameters, kernels::OrientedFeatures& result) {
+  std::vector<OrientedFeature> strong;
+  for (const Feature& feature : features) {
+    const OrientedFeature one = oriented(feature, kind, level, static_cast<float>(scale));
+    const bool whole = one.normal.squaredNorm() > 0.5F && one.position.allFinite();
+    if (whole && strength(one, kind) >= kMinScaleFree) strong.push_back(one);
+  }
+  if (strong.size() > static_cast<std::size_t>(parameters.most_features)) {
+    std::vector<float> strengths;
+    for (const OrientedFeature& one : strong) strengths.push_back(strength(one, kind));
+    const auto last = strengths.begin() + parameters.most_features;
+    std::ranges::nth_element(strengths, last, std::ranges::greater());
+    std::erase_if(strong, [&](const OrientedFeature& one) { return strength(one, kind) < *last; });
+    strong.resize(std::min<std::size_t>(strong.size(), parameters.most_features));
+  }
+  result.features.insert(result.features.end(), strong.begin(), strong.end());
+}
+
+/// `of_kind(kind)` gives the features of a kind.
+template <typename OfKind>
+void add_level(int level, double scale, const RecognitionParameters& parameters,
+               const OfKind& of_kind, kernels::OrientedFeatures& result) {
+  result.level_scale.push_back(static_cast<float>(scale));
+  const int kinds = parameters.torsion ? kernels::kFeatureKinds : kernels::kContourKinds;
+  for (int i = 0; i < kinds; ++i) {
+    const auto kind = static_cast<FeatureKind>(i);
+    add_strongest(of_kind(kind), kind, level, scale, parameters, result);
+  }
+}
+
+void measure(const std::vector<Vector3f>& points, kernels::RecognitionModel& model) {
+  if (points.empty()) return;
+  Vector3f low = points.front();
+  Vector3f high = low;
+  for (const Vector3f& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  model.centre = 0.5F * (low + high);
+  model.diagonal = (high - low).norm();
+}
+
+using Triangles = std::vector<std::array<std::int32_t, 3>>;
+
+/// Small scans have no more to say.
+std::int64_t samples_of(const Triangles& triangles, const RecognitionParameters& parameters) {
+  return std::min<std::int64_t>(parameters.samples,
+                                4 * static_cast<std::int64_t>(triangles.size()));
+}
+
+/// Features on octave levels, and samples of level 0.
+void evolve(const kernels::Surface& surface, const RecognitionParameters& parameters,
+            const engine::RunContext& context, kernels::RecognitionModel& model) {
+  EvolvingSurface evolving(kernels::reordered(surface, kernels::locality_order(surface)), kOctaves,
+                           context);
+  for (int level = 0; level < parameters.levels && !evolving.vanished(); ++level) {
+    const LevelFields fields = evolving.evaluate();
+    if (level == 0) {
+      const kernels::Surface& first = evolving.mesh().surface;
+      measure(fields.points, model);
+      model.samples = kernels::sample_surface(fields.points, first.triangles, fields.normals,
+                                              samples_of(first.triangles, parameters));
+    }
+    const kernels::LevelFeatures found = find_features(evolving, fields, {}, context);
+    add_level(
+        level, fields.scale, parameters,
+        [&](FeatureKind kind) -> const std::vector<Feature>& {
+          return found.of_kind[static_cast<int>(kind)];
+        },
+        model.features);
+    if (level + 1 < parameters.levels) evolving.move();
+  }
+}
+
+/// Whether features of a dataset are those that its surface would be evolved anew for.
+bool has_octaves(const io::Dataset& dataset, const RecognitionParameters& parameters) {
+  try {
+    const SurfaceParameters made = parameters_from_json(dataset.header().parameters_json);
+    SurfaceParameters wanted = made;
+    wanted.evolution = kOctaves;
+    wanted.evolution.rescale = made.evolution.rescale;  // octaves are never rescaled
+    wanted.evolution.principal = made.evolution.principal;
+    wanted.features = {};
+    return to_json(made) == to_json(wanted) && dataset.level_count() >= parameters.levels;
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+}
+
+std::vector<Vector3f> vectors_of(const std::vector<float>& values) {
+  std::vector<Vector3f> vectors(values.size() / 3);
+  for (std::size_t i = 0; i < vectors.size(); ++i)
+    vectors[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+  return vectors;
+}
+
+Triangles triangles_of(const std::vector<std::int64_t>& corners) {
+  Triangles triangles(corners.size() / 3);
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    for (int corner = 0; corner < 3; ++corner)
+      triangles[i][corner] = static_cast<std::int32_t>(corners[3 * i + corner]);
+  return triangles;
+}
+
+}  // namespace
+
+kernels::RecognitionModel recognition_model(const kernels::BuiltSurface& built,
+                                            const RecognitionParameters& parameters,
+                                            const engine::RunContext& context) {
+  kernels::RecognitionModel model;
+  model.origin = built.origin;
+  evolve(built.surface, parameters, context, model);
+  return model;
+}
+
+kernels::RecognitionModel recognition_model(const io::Dataset& dataset,
+                                            const RecognitionParameters& parameters,
+                                            const engine::RunContext& context) {
+  kernels::RecognitionModel model;
+  model.digest = dataset.digest();
+  model.length_unit = dataset.header().length_unit;
+  const auto& origin = dataset.header().origin;
+  model.origin = {origin[0], origin[1], origin[2]};
+  const std::vector<Vector3f> points = vectors_of(dataset.read_floats(0, "points"));
+  const Triangles triangles = triangles_of(dataset.read_integers(0, "triangles"));
+  if (!has_octaves(dataset, parameters)) {
+    kernels::TriangleMesh mesh;
+    for (const Vector3f& p : points) mesh.points.push_back(p.cast<double>());
+    mesh.triangles = triangles;
+    const kernels::BuiltSurface built = kernels::build_surface(std::move(mesh));
+    model.origin += built.origin;
+    evolve(built.surface, parameters, context, model);
+    return model;
+  }
+  measure(points, model);
+  model.samples =
+      kernels::sample_surface(points, triangles, vectors_of(dataset.read_floats(0, "normals")),
+                              samples_of(triangles, parameters));
+  for (int level = 0; level < parameters.levels; ++level)
+    add_level(
+        level, dataset.level(level).scale, parameters,
+        [&](FeatureKind kind) { return dataset.read_features(level, kind); }, model.features);
+  return model;
+}
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,21 @@
+#include "jobs/stages/triplets_job.hpp"
+
+#include "io/dataset.hpp"
+#include "io/triplet_run.hpp"
+#include "kernels/triplet.hpp"
+
+namespace semigeo::jobs {
+
+TripletsJobResult run_triplets_job(const TripletsJob& job, const RecognitionParameters& parameters,
+                                   const engine::RunContext& context) {
+  const io::Dataset dataset(job.dataset);
+  kernels::RecognitionModel model = recognition_model(dataset, parameters, context);
+  model.name = job.name;
+  const std::vector<kernels::Triplet> triplets = kernels::local_triplets(model.features, {});
+  io::write_triplet_run(job.output, job.key, model, triplets);
+  return {.features = static_cast<std::int64_t>(model.features.features.size()),
+          .samples = static_cast<std::int64_t>(model.samples.points.size()),
+          .triplets = static_cast<std::int64_t>(triplets.size())};
+}
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "engine/run_context.hpp"
+#include "jobs/stages/recognition_features.hpp"
+
+namespace semigeo::jobs {
+
+/// Dataset in, run (io/triplet_run.hpp) out.
+struct TripletsJob {
+  std::filesystem::path dataset;
+  std::string name;  ///< of the model
+  std::filesystem::path output;
+  std::string key;  ///< hash of everything the run depends on
+};
+
+struct TripletsJobResult {
+  std::int64_t features = 0;
+  std::int64_t samples = 0;
+  std::int64_t triplets = 0;
+};
+
+/// Throws io::Error on a dataset that cannot be read and when the run cannot be written. The result
+/// does not depend on the number of threads.
+TripletsJobResult run_triplets_job(const TripletsJob& job, const RecognitionParameters& parameters,
+                                   const engine::RunContext& context);
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,101 @@
+#include "kernels/surface_samples.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "kernels/z_order.hpp"
+
+namespace semigeo::kernels {
+namespace {
+
+using Eigen::Vector3f;
+
+using Triangles = std::span<const std::array<std::int32_t, 3>>;
+
+double area_of(std::span<const Vector3f> points, const std::array<std::int32_t, 3>& triangle) {
+  const Eigen::Vector3d p = points[triangle[0]].cast<double>();
+  const Eigen::Vector3d u = points[triangle[1]].cast<double>() - p;
+  const Eigen::Vector3d v = points[triangle[2]].cast<double>() - p;
+  return 0.5 * u.cross(v).norm();
+}
+
+/// Faces along a Z-order curve: equal steps of area along it are spread evenly in space.
+std::vector<std::int32_t> along_curve(std::span<const Vector3f> points, Triangles triangles) {
+  Vector3f low = points.front();
+  Vector3f high = low;
+  for (const Vector3f& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const float cell = std::max((high - low).maxCoeff(), 1e-30F) / 1023;
+  std::vector<std::pair<std::uint64_t, std::int32_t>> keys;
+  keys.reserve(triangles.size());
+  for (const auto& [a, b, c] : triangles) {
+    const Vector3f place = ((points[a] + points[b] + points[c]) / 3 - low) / cell;
+    std::uint64_t key = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      key |= spread_bits(static_cast<std::uint64_t>(place[axis])) << axis;
+    keys.emplace_back(key, static_cast<std::int32_t>(keys.size()));
+  }
+  std::ranges::sort(keys);
+  std::vector<std::int32_t> order;
+  order.reserve(keys.size());
+  for (const auto& [key, face] : keys) order.push_back(face);
+  return order;
+}
+
+/// The fractions of k times two irrational numbers: evenly spread over the unit square (R.
+/// Kronecker sequence with the plastic number).
+Eigen::Vector2f spread_over_square(std::int64_t k) {
+  constexpr double kPlastic = 1.32471795724474602596;
+  const auto fraction = [](double x) { return static_cast<float>(x - std::floor(x)); };
+  const auto n = static_cast<double>(k);
+  return {fraction(n / kPlastic), fraction(n / (kPlastic * kPlastic))};
+}
+
+/// 0, 1, ..., count - 1 in an order whose beginnings are spread evenly: by reversed bits.
+std::vector<std::int64_t> evenly_begun(std::int64_t count) {
+  const auto bits = static_cast<int>(std::bit_width(static_cast<std::uint64_t>(count - 1)));
+  std::vector<std::int64_t> order;
+  for (std::int64_t i = 0; i < std::int64_t{1} << bits; ++i) {
+    std::int64_t reversed = 0;
+    for (int bit = 0; bit < bits; ++bit) reversed |= ((i >> bit) & 1) << (bits - 1 - bit);
+    if (reversed < count) order.push_back(reversed);
+  }
+  return order;
+}
+
+}  // namespace
+
+SurfaceSamples sample_surface(std::span<const Vector3f> points, Triangles triangles,
+                              std::span<const Vector3f> normals, std::int64_t count) {
+  SurfaceSamples samples;
+  if (triangles.empty() || count <= 0) return samples;
+  const std::vector<std::int32_t> order = along_curve(points, triangles);
+  std::vector<double> area_until;
+  area_until.reserve(order.size());
+  double area = 0;
+  for (const std::int32_t face : order)
+    area_until.push_back(area += area_of(points, triangles[face]));
+  if (!(area > 0)) return samples;
+  samples.spacing = static_cast<float>(std::sqrt(area / static_cast<double>(count)));
+  for (const std::int64_t k : evenly_begun(count)) {
+    const double at = (static_cast<double>(k) + 0.5) / static_cast<double>(count) * area;
+    const auto face = std::ranges::upper_bound(area_until, at) - area_until.begin();
+    const auto last = static_cast<std::ptrdiff_t>(order.size()) - 1;
+    const auto& [a, b, c] = triangles[order[std::min(face, last)]];
+    Eigen::Vector2f uv = spread_over_square(k);
+    if (uv.sum() > 1) uv = Eigen::Vector2f::Ones() - uv;
+    const auto mixed = [&](const Vector3f& p, const Vector3f& q, const Vector3f& r) -> Vector3f {
+      return (1 - uv.sum()) * p + uv.x() * q + uv.y() * r;
+    };
+    samples.points.push_back(mixed(points[a], points[b], points[c]));
+    samples.normals.push_back(mixed(normals[a], normals[b], normals[c]).stableNormalized());
+  }
+  return samples;
+}
+
+}  // namespace semigeo::kernels

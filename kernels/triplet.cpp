@@ -1,0 +1,300 @@
+#include "kernels/triplet.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+namespace semigeo::kernels {
+namespace {
+
+using Eigen::Vector3f;
+using Corners = std::array<std::uint16_t, 3>;
+
+constexpr float kRatioTolerance = 0.09F;
+constexpr float kScaleTolerance = 0.35F;
+constexpr float kLeastSecondRatio = 0.5F;
+constexpr float kLeastThirdRatio = 0.08F;
+constexpr float kLeastScale = 0.693F;  // log 2
+
+// Curvatures are stored on a scale on which 0.25 + 0.35 |q| is one unit everywhere.
+constexpr float kCurvatureTolerance = 0.25F;
+constexpr float kCurvatureSlope = 0.35F;
+constexpr float kMostWarped = 6;
+
+constexpr float kCosNormalTolerance = 0.866F;  // 30 degrees
+constexpr float kNormalChord = 0.5177F;        // 2 sin 15 degrees
+
+/// Bytes for [low, high].
+struct Bytes {
+  float low;
+  float high;
+  constexpr float step() const { return (high - low) / 255; }
+  std::uint8_t of(float value) const {
+    return static_cast<std::uint8_t>(std::lround(std::clamp((value - low) / step(), 0.0F, 255.0F)));
+  }
+  /// In bytes, rounded down: both values have been rounded.
+  constexpr std::uint8_t tolerance(float width) const {
+    return static_cast<std::uint8_t>(width / step());
+  }
+};
+constexpr Bytes kRatio = {0, 1.2F};
+constexpr Bytes kScale = {kLeastScale, kLeastScale + kScaleBins* kScaleTolerance};
+constexpr Bytes kCurvature = {-kMostWarped, kMostWarped};
+constexpr Bytes kShare = {-1, 1};
+
+enum Invariant { kSecondRatio, kThirdRatio, kLogScale, kCurvatures, kNormals = 9, kSigns = 15 };
+
+constexpr Invariants tolerances() {
+  Invariants result = {};
+  result[kSecondRatio] = result[kThirdRatio] = kRatio.tolerance(kRatioTolerance);
+  result[kLogScale] = kScale.tolerance(kScaleTolerance);
+  for (int i = kCurvatures; i < kNormals; ++i) result[i] = kCurvature.tolerance(1);
+  for (int i = kNormals; i < kSigns; ++i) result[i] = kShare.tolerance(kNormalChord);
+  result[kSigns] = 255;
+  return result;
+}
+constexpr Invariants kTolerances = tolerances();
+
+std::uint8_t curvature_byte(float q) {
+  const float warped =
+      std::log1p(kCurvatureSlope / kCurvatureTolerance * std::abs(q)) / kCurvatureSlope;
+  return kCurvature.of(std::copysign(warped, q));
+}
+
+int bin(float value, float least, float width, int bins) {
+  return std::clamp(static_cast<int>((value - least) / width), 0, bins - 1);
+}
+
+/// A normal in the frame of its triangle: along the triangle's normal, the longest side, the
+/// height.
+Vector3f normal_of(const Invariants& invariants, int corner) {
+  const float a = kShare.low + kShare.step() * invariants[kNormals + 2 * corner];
+  const float b = kShare.low + kShare.step() * invariants[kNormals + 2 * corner + 1];
+  const float rest = std::sqrt(std::max(0.0F, 1 - a * a - b * b));
+  const bool negative = ((invariants[kSigns] >> corner) & 1) != 0;
+  return {a, b, negative ? -rest : rest};
+}
+
+/// Sixteen bytes in one register, as GCC and Clang have them on every machine.
+using SixteenBytes = std::uint8_t __attribute__((vector_size(kInvariants)));
+
+SixteenBytes bytes_of(const Invariants& invariants) {
+  SixteenBytes bytes;
+  std::memcpy(&bytes, invariants.data(), sizeof bytes);
+  return bytes;
+}
+
+bool within_tolerances(SixteenBytes a, SixteenBytes b) {
+  const SixteenBytes larger = a > b ? a : b;
+  const SixteenBytes smaller = a > b ? b : a;
+  const auto beyond = (larger - smaller) > bytes_of(kTolerances);  // bytes of ones where so
+  std::array<std::uint64_t, 2> halves;
+  std::memcpy(halves.data(), &beyond, sizeof halves);
+  return (halves[0] | halves[1]) == 0;
+}
+
+bool same_normals(const Invariants& a, const Invariants& b) {
+  for (int corner = 0; corner < 3; ++corner)
+    if (normal_of(a, corner).dot(normal_of(b, corner)) < kCosNormalTolerance) return false;
+  return true;
+}
+
+std::uint64_t packed(const Corners& corners) {
+  return std::uint64_t{corners[0]} << 32 | std::uint64_t{corners[1]} << 16 | corners[2];
+}
+
+/// What of a triplet belongs to one feature, whatever its triangle is.
+struct Corner {
+  Vector3f position;
+  Vector3f normal;
+  std::uint8_t gaussian;
+  std::uint8_t mean;
+  std::uint8_t code;
+};
+
+class LevelTriplets {
+ public:
+  LevelTriplets(const OrientedFeatures& features, const TripletOptions& options,
+                std::vector<Triplet>& result)
+      : features_(features), options_(options), result_(result) {}
+
+  /// Of the features first to last - 1, which are those of one level.
+  void add(std::size_t first, std::size_t last) {
+    first_ = first;
+    sigma_ = features_.level_scale[features_.features[first].level];
+    corners_.clear();
+    for (std::size_t i = first; i < last; ++i) {
+      const OrientedFeature& f = features_.features[i];
+      corners_.push_back({f.position, f.normal, curvature_byte(f.scale_free_gaussian),
+                          curvature_byte(f.scale_free_mean), f.code});
+    }
+    for (const std::uint64_t triangle : triangles())
+      enter({static_cast<std::uint16_t>(triangle >> 32), static_cast<std::uint16_t>(triangle >> 16),
+             static_cast<std::uint16_t>(triangle)});
+  }
+
+ private:
+  bool in_band(float squared) const {
+    const double nearest = options_.nearest * sigma_;
+    const double farthest = options_.farthest * sigma_;
+    return squared >= nearest * nearest && squared <= farthest * farthest;
+  }
+
+  /// The nearest ones within the band, the nearer first; of equals the earlier.
+  void find_neighbours(std::size_t of) {
+    near_.clear();
+    for (std::size_t j = 0; j < corners_.size(); ++j) {
+      const float squared = (corners_[j].position - corners_[of].position).squaredNorm();
+      if (in_band(squared)) near_.emplace_back(squared, static_cast<std::uint16_t>(j));
+    }
+    const auto count = std::min<std::size_t>(near_.size(), options_.neighbours);
+    std::ranges::partial_sort(near_, near_.begin() + static_cast<std::ptrdiff_t>(count));
+    near_.resize(count);
+  }
+
+  /// Each once, its corners ascending. Packed: numbers are sorted faster than arrays.
+  std::vector<std::uint64_t> triangles() {
+    std::vector<std::uint64_t> found;
+    const double nearest = options_.nearest * sigma_;
+    for (std::size_t i = 0; i < corners_.size(); ++i) {
+      find_neighbours(i);
+      for (std::size_t a = 0; a < near_.size(); ++a)
+        for (std::size_t b = a + 1; b < near_.size(); ++b) {
+          const std::uint16_t j = near_[a].second;
+          const std::uint16_t k = near_[b].second;
+          if ((corners_[j].position - corners_[k].position).squaredNorm() < nearest * nearest)
+            continue;
+          Corners triangle = {static_cast<std::uint16_t>(i), j, k};
+          std::ranges::sort(triangle);
+          found.push_back(packed(triangle));
+        }
+    }
+    std::ranges::sort(found);
+    const auto rest = std::ranges::unique(found);
+    found.erase(rest.begin(), rest.end());
+    return found;
+  }
+
+  /// Length of the side opposite to each corner.
+  std::array<float, 3> sides(const Corners& t) const {
+    const auto length = [&](int a, int b) {
+      return (corners_[t[a]].position - corners_[t[b]].position).norm();
+    };
+    return {length(1, 2), length(2, 0), length(0, 1)};
+  }
+
+  void enter(Corners triangle) {
+    const std::array<float, 3> all = sides(triangle);
+    std::array<int, 3> order = {0, 1, 2};
+    std::ranges::stable_sort(order, std::ranges::greater(), [&](int i) { return all[i]; });
+    const auto enter_in = [&](const std::array<int, 3>& o) {
+      enter({triangle[o[0]], triangle[o[1]], triangle[o[2]]}, {all[o[0]], all[o[1]], all[o[2]]});
+    };
+    if (!options_.every_order) return enter_in(order);
+    std::array<int, 3> permuted = {0, 1, 2};
+    do {
+      // What the other side measured as shorter may be longer here, within the tolerance.
+      const float slack = kRatioTolerance * all[permuted[0]];
+      if (all[permuted[1]] <= all[permuted[0]] + slack &&
+          all[permuted[2]] <= all[permuted[1]] + slack &&
+          all[permuted[2]] <= all[permuted[0]] + slack)
+        enter_in(permuted);
+    } while (std::ranges::next_permutation(permuted).found);
+  }
+
+  void enter(const Corners& t, const std::array<float, 3>& side) {
+    const Corner& p = corners_[t[0]];
+    const Corner& q = corners_[t[1]];
+    const Corner& r = corners_[t[2]];
+    const Vector3f base = (r.position - q.position) / side[0];
+    const Vector3f across = (q.position - p.position).cross(r.position - p.position);
+    const float longest = std::max({side[0], side[1], side[2]});
+    const float twice_area = across.norm();
+    if (twice_area < options_.min_height * longest * longest || twice_area <= 0) return;
+    const Vector3f normal = across / twice_area;
+    const Vector3f height = normal.cross(base);
+
+    Triplet triplet;
+    const float second = side[1] / side[0];
+    const float third = side[2] / side[0];
+    const float scale = std::log(side[0] / sigma_);
+    Invariants& v = triplet.invariants;
+    v[kSecondRatio] = kRatio.of(second);
+    v[kThirdRatio] = kRatio.of(third);
+    v[kLogScale] = kScale.of(scale);
+    for (int i = 0; i < 3; ++i) {
+      const Corner& corner = corners_[t[i]];
+      v[kCurvatures + 2 * i] = corner.gaussian;
+      v[kCurvatures + 2 * i + 1] = corner.mean;
+      v[kNormals + 2 * i] = kShare.of(corner.normal.dot(normal));
+      v[kNormals + 2 * i + 1] = kShare.of(corner.normal.dot(base));
+      if (corner.normal.dot(height) < 0) v[kSigns] |= static_cast<std::uint8_t>(1 << i);
+      triplet.corners[i] = static_cast<std::uint16_t>(first_ + t[i]);
+    }
+    const int shape =
+        (bin(second, kLeastSecondRatio, kRatioTolerance, kSecondRatioBins) * kThirdRatioBins +
+         bin(third, kLeastThirdRatio, kRatioTolerance, kThirdRatioBins)) *
+            kScaleBins +
+        bin(scale, kLeastScale, kScaleTolerance, kScaleBins);
+    const int codes = (p.code * kFeatureCodes + q.code) * kFeatureCodes + r.code;
+    triplet.cell = static_cast<std::uint32_t>(shape * kCodeTriples + codes);
+    result_.push_back(triplet);
+  }
+
+  const OrientedFeatures& features_;
+  const TripletOptions& options_;
+  std::vector<Triplet>& result_;
+  std::size_t first_ = 0;
+  float sigma_ = 1;
+  std::vector<Corner> corners_;
+  std::vector<std::pair<float, std::uint16_t>> near_;
+};
+
+}  // namespace
+
+std::vector<Triplet> local_triplets(const OrientedFeatures& features,
+                                    const TripletOptions& options) {
+  std::vector<Triplet> result;
+  LevelTriplets level(features, options, result);
+  const std::vector<OrientedFeature>& all = features.features;
+  for (std::size_t first = 0; first < all.size();) {
+    std::size_t last = first;
+    while (last < all.size() && all[last].level == all[first].level) ++last;
+    level.add(first, last);
+    first = last;
+  }
+  std::ranges::sort(result, {}, [](const Triplet& t) { return std::pair(t.cell, t.corners); });
+  return result;
+}
+
+std::vector<std::uint32_t> cells_around(std::uint32_t cell) {
+  const auto codes = cell % kCodeTriples;
+  const int shape = static_cast<int>(cell / kCodeTriples);
+  const int scale = shape % kScaleBins;
+  const int third = shape / kScaleBins % kThirdRatioBins;
+  const int second = shape / kScaleBins / kThirdRatioBins;
+  std::vector<std::uint32_t> cells;
+  for (int i = std::max(second - 1, 0); i <= std::min(second + 1, kSecondRatioBins - 1); ++i)
+    for (int j = std::max(third - 1, 0); j <= std::min(third + 1, kThirdRatioBins - 1); ++j)
+      for (int k = std::max(scale - 1, 0); k <= std::min(scale + 1, kScaleBins - 1); ++k)
+        cells.push_back(((i * kThirdRatioBins + j) * kScaleBins + k) * kCodeTriples + codes);
+  return cells;
+}
+
+bool compatible(const Invariants& a, const Invariants& b) {
+  return within_tolerances(bytes_of(a), bytes_of(b)) && same_normals(a, b);
+}
+
+void find_compatible(const Invariants& wanted, std::span<const Posting> postings,
+                     std::vector<std::uint32_t>& found) {
+  const SixteenBytes bytes = bytes_of(wanted);
+  for (std::uint32_t i = 0; i < postings.size(); ++i) {
+    const Invariants& other = postings[i].invariants;
+    if (within_tolerances(bytes, bytes_of(other)) && same_normals(wanted, other))
+      found.push_back(i);
+  }
+}
+
+}  // namespace semigeo::kernels
