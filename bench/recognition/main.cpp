@@ -143,7 +143,8 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--levels", e.parameters.levels, "Of features")->check(CLI::Range(1, 20));
   app.add_option("--most-features", e.parameters.most_features, "Of each level and kind")
       ->check(CLI::Range(3, 10000));
-  app.add_flag("--torsion", e.parameters.torsion, "Features of torsion too");
+  app.add_flag("--torsion,!--no-torsion", e.parameters.torsion, "Features of torsion too")
+      ->capture_default_str();
   app.add_option("--samples", e.parameters.samples, "Of a surface, at most")
       ->check(CLI::Range(10, 1'000'000));
   app.add_option("--min-score", e.recognition.min_score, "Below it nothing is reported");

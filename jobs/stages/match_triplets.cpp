@@ -40,13 +40,6 @@ double lot_of(std::uint32_t triangle) {
   return static_cast<double>(triangle * 2654435769U) / 4294967296.0;
 }
 
-/// A triplet of the scene in a cell where it looks for others.
-struct Lookup {
-  std::uint32_t cell;
-  std::uint32_t triplet;
-  friend auto operator<=>(const Lookup&, const Lookup&) = default;
-};
-
 /// Lookups of one cell in one block of postings.
 struct Segment {
   std::int64_t block;
@@ -64,10 +57,13 @@ class Matcher {
         scene_(scene),
         triangles_(triangles_of(scene)) {}
 
-  TripletMatches run(std::int64_t most_compared, const engine::RunContext& context) {
-    look_up(1);
-    if (const std::int64_t all = comparisons(); all > most_compared)
-      look_up(static_cast<double>(most_compared) / static_cast<double>(all));
+  TripletMatches run(const MatchLimits& limits, const engine::RunContext& context) {
+    const double triangles = triangles_.empty() ? 0 : 1.0 + std::ranges::max(triangles_);
+    const double share = static_cast<double>(limits.triangles) / std::max(triangles, 1.0);
+    look_up(share);
+    if (const std::int64_t all = comparisons(); all > limits.compared)
+      look_up(std::min(share, 1.0) * static_cast<double>(limits.compared) /
+              static_cast<double>(all));
     cut_into_blocks();
     std::vector<std::vector<TripletMatch>> found(blocks_.size());
     context.workers.for_blocks(static_cast<std::int64_t>(blocks_.size()), 1,
@@ -79,29 +75,47 @@ class Matcher {
   }
 
  private:
+  /// Of an even share of the triangles, sorts triplets by the cells that they look into: those of
+  /// cell c are lookups_[first_lookup_[c]] and so on.
   void look_up(double share) {
-    lookups_.clear();
-    for (std::uint32_t i = 0; i < scene_.size(); ++i) {
-      if (share < 1 && lot_of(triangles_[i]) >= share) continue;
-      for (const std::uint32_t cell : kernels::cells_around(scene_[i].cell))
-        if (cells_[cell] < cells_[cell + 1]) lookups_.push_back({cell, i});
-    }
-    std::ranges::sort(lookups_);
+    std::vector<std::uint32_t> chosen;
+    for (std::uint32_t i = 0; i < scene_.size(); ++i)
+      if (share >= 1 || lot_of(triangles_[i]) < share) chosen.push_back(i);
+    first_lookup_.assign(cells_.size(), 0);
+    const auto for_each_lookup = [&](const auto& body) {
+      std::uint32_t last_cell = 0;
+      std::vector<std::uint32_t> cells;
+      for (const std::uint32_t i : chosen) {
+        if (cells.empty() || scene_[i].cell != last_cell) {
+          last_cell = scene_[i].cell;
+          cells = kernels::cells_around(last_cell);
+          std::erase_if(cells, [&](std::uint32_t c) { return cells_[c] == cells_[c + 1]; });
+        }
+        for (const std::uint32_t cell : cells) body(cell, i);
+      }
+    };
+    for_each_lookup([&](std::uint32_t cell, std::uint32_t) { ++first_lookup_[cell + 1]; });
+    std::partial_sum(first_lookup_.begin(), first_lookup_.end(), first_lookup_.begin());
+    lookups_.resize(first_lookup_.back());
+    std::vector<std::size_t> next = first_lookup_;
+    for_each_lookup(
+        [&](std::uint32_t cell, std::uint32_t triplet) { lookups_[next[cell]++] = triplet; });
   }
 
   std::int64_t comparisons() const {
     std::int64_t sum = 0;
-    for (const Lookup& lookup : lookups_)
-      sum += static_cast<std::int64_t>(cells_[lookup.cell + 1] - cells_[lookup.cell]);
+    for (std::size_t cell = 0; cell + 1 < cells_.size(); ++cell)
+      sum += static_cast<std::int64_t>((first_lookup_[cell + 1] - first_lookup_[cell]) *
+                                       (cells_[cell + 1] - cells_[cell]));
     return sum;
   }
 
   void cut_into_blocks() {
     const std::int64_t size = library_.block_size();
-    for (std::size_t first = 0; first < lookups_.size();) {
-      const std::uint32_t cell = lookups_[first].cell;
-      std::size_t last = first;
-      while (last < lookups_.size() && lookups_[last].cell == cell) ++last;
+    for (std::size_t cell = 0; cell + 1 < cells_.size(); ++cell) {
+      const std::size_t first = first_lookup_[cell];
+      const std::size_t last = first_lookup_[cell + 1];
+      if (first == last) continue;
       const auto end = static_cast<std::int64_t>(cells_[cell + 1]);
       for (auto at = static_cast<std::int64_t>(cells_[cell]); at < end;) {
         const std::int64_t block = at / size;
@@ -112,7 +126,6 @@ class Matcher {
         blocks_.back().second = segments_.size();
         at = until;
       }
-      first = last;
     }
   }
 
@@ -126,7 +139,7 @@ class Matcher {
         const std::int64_t end = std::min(segment.last_posting, tile + kTile);
         const auto some = std::span(postings).subspan(tile, end - tile);
         for (std::size_t l = segment.first_lookup; l < segment.last_lookup; ++l)
-          compare(lookups_[l].triplet, some, compatible, found);
+          compare(lookups_[l], some, compatible, found);
       }
     }
   }
@@ -173,7 +186,8 @@ class Matcher {
   std::span<const std::uint64_t> cells_;
   const std::vector<Triplet>& scene_;
   std::vector<std::uint32_t> triangles_;
-  std::vector<Lookup> lookups_;
+  std::vector<std::size_t> first_lookup_;  ///< (cells + 1)
+  std::vector<std::uint32_t> lookups_;     ///< triplets of the scene
   std::vector<Segment> segments_;
   std::vector<std::pair<std::size_t, std::size_t>> blocks_;  ///< ranges of segments
 };
@@ -181,8 +195,8 @@ class Matcher {
 }  // namespace
 
 TripletMatches match_triplets(const io::HashLibrary& library, const std::vector<Triplet>& scene,
-                              std::int64_t most_compared, const engine::RunContext& context) {
-  return Matcher(library, scene).run(most_compared, context);
+                              const MatchLimits& limits, const engine::RunContext& context) {
+  return Matcher(library, scene).run(limits, context);
 }
 
 }  // namespace semigeo::jobs

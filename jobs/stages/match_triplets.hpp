@@ -27,12 +27,18 @@ struct TripletMatches {
   std::int64_t compared = 0;  ///< pairs of triplets that were looked at
 };
 
-/// Looks up the triplets of a scene. Reads only the blocks of the library in which something may
-/// match, each once. If that would mean comparing more than `most_compared` pairs, an even share of
-/// the scene's triangles is looked up. Does not depend on the number of threads.
+/// Where a scene has more, an even share of its triangles is looked up: an object that is seen well
+/// has hundreds of them.
+struct MatchLimits {
+  std::int64_t triangles = 60'000;
+  std::int64_t compared = 3'000'000'000;  ///< pairs of triplets
+};
+
+/// Looks up the triplets of a scene, which must be sorted by cell. Reads only the blocks of the
+/// library in which something may match, each once. Does not depend on the number of threads.
 /// Source: thesis 4.5, step 4.
 TripletMatches match_triplets(const io::HashLibrary& library,
-                              const std::vector<kernels::Triplet>& scene,
-                              std::int64_t most_compared, const engine::RunContext& context);
+                              const std::vector<kernels::Triplet>& scene, const MatchLimits& limits,
+                              const engine::RunContext& context);
 
 }  // namespace semigeo::jobs

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "jobs/stages/match_triplets.hpp"
@@ -20,9 +21,8 @@ using kernels::Similarity;
 
 /// A scene's feature may be a little out of the band that the model's is in.
 constexpr double kBandSlack = 1.075;
-constexpr std::int64_t kMostCompared = 3'000'000'000;
-constexpr std::size_t kShortlist = 200;      ///< models with the most votes
-constexpr std::size_t kMostMatches = 20000;  ///< of one model, the weightiest
+constexpr std::size_t kShortlist = 200;     ///< models with the most votes
+constexpr std::size_t kMostMatches = 8000;  ///< of one model, the weightiest
 
 // Each look at a pose costs more than the one before, and fewer poses are looked at.
 constexpr std::int64_t kGlanceSamples = 60;
@@ -82,7 +82,7 @@ class Recogniser {
   Recognition run() {
     const std::vector<kernels::Triplet> triplets =
         kernels::local_triplets(scene_.features, scene_triplets());
-    matches_ = match_triplets(library_, triplets, kMostCompared, context_);
+    matches_ = match_triplets(library_, triplets, {}, context_);
     result_.scene_triplets = matches_.scene_triplets;
     result_.matches = static_cast<std::int64_t>(matches_.matches.size());
     shortlist();
@@ -121,8 +121,13 @@ class Recogniser {
     std::vector<TripletMatch> matches(matches_.matches.begin() + matches_.first[listed.model],
                                       matches_.matches.begin() + matches_.first[listed.model + 1]);
     if (matches.size() > kMostMatches) {
-      std::ranges::stable_sort(matches, std::ranges::greater(), &TripletMatch::weight);
+      const auto heavier = [](const TripletMatch& a, const TripletMatch& b) {
+        return std::tie(b.weight, a.triangle, a.model_corners) <
+               std::tie(a.weight, b.triangle, b.model_corners);
+      };
+      std::ranges::nth_element(matches, matches.begin() + kMostMatches, heavier);
       matches.resize(kMostMatches);
+      std::ranges::sort(matches, heavier);
     }
     std::vector<kernels::PoseVote> votes;
     votes.reserve(matches.size());

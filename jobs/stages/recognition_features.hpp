@@ -9,9 +9,9 @@ namespace semigeo::jobs {
 
 /// What of a surface recognition looks at; part of the key of a library.
 struct RecognitionParameters {
-  int levels = 3;           ///< octave levels 0, 1, ...
+  int levels = 4;           ///< octave levels 0, 1, ...
   int most_features = 400;  ///< of each level and kind, those that stand out most
-  bool torsion = false;     ///< maxima of torsion as well
+  bool torsion = true;      ///< maxima of torsion as well as of curvature
   int samples = 4000;       ///< of the surface, at most
   /// Fine scans have more levels, until sigma is this share of the diagonal: what another scan of
   /// the object shows at its first level must be among them, however much coarser that is.
