@@ -214,7 +214,9 @@ class Recogniser {
                                           {}, kExplainedSamples, used);
     pose.explained = static_cast<double>(std::ranges::count(marks, 1)) /
                      static_cast<double>(std::max<std::size_t>(marks.size(), 1));
-    pose.score = pose.overlap.agreement() * std::sqrt(pose.explained);
+    // A pose that surfaces alone speak for is half as good as one that many triplets want, too.
+    pose.score = pose.overlap.agreement() * std::sqrt(pose.explained) * (1 + pose.support) /
+                 (2 + pose.support);
   }
 
   Candidate candidate_of(const Pose& pose) const {
