@@ -85,4 +85,26 @@ SurfaceParameters parameters_from_json(const std::string& text) {
   }
 }
 
+std::string to_json(const RecognitionParameters& parameters) {
+  return nlohmann::json{{"levels", parameters.levels},
+                        {"most_features", parameters.most_features},
+                        {"samples", parameters.samples},
+                        {"torsion", parameters.torsion}}
+      .dump();
+}
+
+RecognitionParameters recognition_parameters_from_json(const std::string& text) {
+  try {
+    const auto json = nlohmann::json::parse(text);
+    RecognitionParameters parameters;
+    json.at("levels").get_to(parameters.levels);
+    json.at("most_features").get_to(parameters.most_features);
+    json.at("samples").get_to(parameters.samples);
+    json.at("torsion").get_to(parameters.torsion);
+    return parameters;
+  } catch (const nlohmann::json::exception& e) {
+    throw std::runtime_error(std::string("are no parameters: ") + e.what());
+  }
+}
+
 }  // namespace semigeo::jobs

@@ -9,6 +9,7 @@
 #include "jobs/stages/evolving_surface.hpp"
 #include "jobs/stages/level_features.hpp"
 #include "jobs/stages/prepare_surface.hpp"
+#include "jobs/stages/recognition_features.hpp"
 
 namespace semigeo::jobs {
 
@@ -28,11 +29,21 @@ std::string to_json(const SurfaceParameters& parameters);
 /// The parameters again. Throws std::runtime_error on a text that to_json does not give.
 SurfaceParameters parameters_from_json(const std::string& text);
 
+/// The same of recognition: what a run of triplets depends on besides its dataset.
+std::string to_json(const RecognitionParameters& parameters);
+RecognitionParameters recognition_parameters_from_json(const std::string& text);
+
+/// What jobs depend on besides their inputs: each kind on its part.
+struct JobParameters {
+  SurfaceParameters surface = {};
+  RecognitionParameters recognition = {};
+};
+
 /// What `semigeo run` was asked to do.
 struct RunConfig {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path archive;
-  SurfaceParameters surface;
+  JobParameters jobs;
   int threads = 0;  ///< 0: all cores
 };
 

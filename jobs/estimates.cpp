@@ -152,18 +152,24 @@ Estimates Estimates::read(const fs::path& archive) {
 Estimate Estimates::of(const ScanSize& scan, int levels, int threads) const {
   const auto found = by_format_.find(scan.format);
   const Rates rates = found == by_format_.end() ? Rates{} : found->second;
+  const double vertices =
+      static_cast<double>(scan.bytes) / rates.file_bytes.value_or(built_in_file_bytes(scan.format));
+  return of(vertices, rates, levels, threads);
+}
+
+Estimate Estimates::of(double vertices, int levels, int threads) const {
+  return of(vertices, {}, levels, threads);
+}
+
+Estimate Estimates::of(double vertices, const Rates& rates, int levels, int threads) const {
   const auto known = [&](std::optional<double> Rates::*rate, double built_in) {
     return (rates.*rate).value_or((all_.*rate).value_or(built_in));
   };
-  Estimate estimate;
-  estimate.vertices =
-      static_cast<double>(scan.bytes) / rates.file_bytes.value_or(built_in_file_bytes(scan.format));
-  estimate.peak_bytes =
-      (kBaseBytes + known(&Rates::memory_bytes, kMemoryBytes) * estimate.vertices) * kMemorySafety;
-  estimate.seconds = kBaseSeconds + 1e-6 * known(&Rates::microseconds, kMicroseconds) *
-                                        estimate.vertices * std::max(levels, 1) /
-                                        std::max(threads, 1);
-  return estimate;
+  return {.vertices = vertices,
+          .peak_bytes =
+              (kBaseBytes + known(&Rates::memory_bytes, kMemoryBytes) * vertices) * kMemorySafety,
+          .seconds = kBaseSeconds + 1e-6 * known(&Rates::microseconds, kMicroseconds) * vertices *
+                                        std::max(levels, 1) / std::max(threads, 1)};
 }
 
 void Estimates::write(const fs::path& archive) const {

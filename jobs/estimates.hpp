@@ -11,7 +11,7 @@
 
 namespace semigeo::jobs {
 
-/// What a surface job is expected to need.
+/// What a job is expected to need.
 struct Estimate {
   double vertices = 0;
   double peak_bytes = 0;  ///< of memory, with a margin for safety
@@ -46,6 +46,8 @@ class Estimates {
 
   /// `levels` counts level 0.
   Estimate of(const ScanSize& scan, int levels, int threads) const;
+  /// The same of a surface of so many vertices, by the rates of all formats.
+  Estimate of(double vertices, int levels, int threads) const;
 
   const std::map<std::string, Rates>& by_format() const { return by_format_; }
   const Rates& all() const { return all_; }
@@ -53,13 +55,15 @@ class Estimates {
   void write(const std::filesystem::path& archive) const;
 
  private:
+  Estimate of(double vertices, const Rates& rates, int levels, int threads) const;
+
   std::map<std::string, Rates> by_format_;
   Rates all_;
 };
 
-/// Learns rates from jobs that have ended, given in the order in which they did. Failed jobs,
-/// numbers that cannot be true, and scans too small to tell are passed over. Keeps a few hundred
-/// jobs of each format, so that the archive may be of any age.
+/// Learns rates from jobs that have ended, given in the order in which they did. Failed jobs, other
+/// kinds, numbers that cannot be true, and scans too small to tell are passed over. Keeps a few
+/// hundred jobs of each format, so that the archive may be of any age.
 class EstimateLearner {
  public:
   void add(const JobEnded& job);

@@ -1,7 +1,10 @@
 #include "jobs/job_line.hpp"
 
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
+#include <variant>
 
 #include "jobs/path_text.hpp"
 
@@ -11,8 +14,8 @@ namespace {
 using nlohmann::json;
 
 /// Names every number and word of a result, for writing and for reading alike.
-template <typename Result, typename Visit>
-void each_field(Result& r, const Visit& visit) {
+template <typename Visit>
+void each_field(SurfaceJobResult& r, const Visit& visit) {
   visit("format", r.format);
   visit("vertices", r.vertices);
   visit("triangles", r.triangles);
@@ -49,15 +52,61 @@ void each_field(Result& r, const Visit& visit) {
   visit("dropped_faces", r.remeshed.dropped_faces);
 }
 
-json to_json_object(const SurfaceJobResult& result) {
-  json object;
-  each_field(result, [&](const char* name, const auto& value) { object[name] = value; });
+template <typename Visit>
+void each_field(TripletsJobResult& r, const Visit& visit) {
+  visit("features", r.features);
+  visit("samples", r.samples);
+  visit("triplets", r.triplets);
+}
+
+template <typename Visit>
+void each_field(PartitionJobResult& r, const Visit& visit) {
+  visit("postings", r.postings);
+}
+
+template <typename Visit>
+void each_field(LibraryJobResult& r, const Visit& visit) {
+  visit("models", r.models);
+  visit("postings", r.postings);
+  visit("digest", r.digest);
+}
+
+template <typename Visit>
+void each_field(std::monostate&, const Visit&) {}
+
+/// Numbers of the kinds of results: their places in JobResult.
+constexpr const char* kResultNames[] = {"", "surface", "triplets", "partition", "library"};
+static_assert(std::size(kResultNames) == std::variant_size_v<JobResult>);
+
+/// Null for none.
+json to_json_object(JobResult result) {
+  if (result.index() == 0) return nullptr;
+  json object = {{"kind", kResultNames[result.index()]}};
+  std::visit(
+      [&](auto& one) {
+        each_field(one, [&](const char* name, const auto& value) { object[name] = value; });
+      },
+      result);
   return object;
 }
 
-SurfaceJobResult result_from(const json& object) {
-  SurfaceJobResult result;
-  each_field(result, [&](const char* name, auto& value) { object.at(name).get_to(value); });
+template <typename Result>
+void read_result(const json& object, JobResult& found) {
+  JobResult result = Result{};
+  if (object.at("kind") != kResultNames[result.index()]) return;
+  each_field(std::get<Result>(result),
+             [&](const char* name, auto& value) { object.at(name).get_to(value); });
+  found = std::move(result);
+}
+
+JobResult result_from(const json& object) {
+  JobResult result;
+  if (object.is_null()) return result;
+  read_result<SurfaceJobResult>(object, result);
+  read_result<TripletsJobResult>(object, result);
+  read_result<PartitionJobResult>(object, result);
+  read_result<LibraryJobResult>(object, result);
+  if (result.index() == 0) throw std::runtime_error("is no answer of a job: of no known kind");
   return result;
 }
 
@@ -71,17 +120,35 @@ auto reading(const char* what, const std::string& line, const Read& read) {
   }
 }
 
+std::vector<std::string> escaped_list(std::vector<std::string> texts) {
+  for (std::string& text : texts) text = escaped(text);
+  return texts;
+}
+
+JobKind kind_from(const std::string& name) {
+  for (const JobKind kind : kJobKinds)
+    if (name == name_of(kind)) return kind;
+  throw std::runtime_error("is no job: of no known kind: " + name);
+}
+
 }  // namespace
 
 std::string to_line(const JobRequest& request) {
-  const SurfaceJob& job = request.job;
-  return json{{"input", escaped(job.input.string())},
+  const Job& job = request.job;
+  return json{{"kind", name_of(job.kind)},
+              {"input", escaped(job.input.string())},
               {"input_name", job.input_name},
-              {"name", job.name},
+              {"name", escaped(job.name)},
               {"output", escaped(job.output.string())},
               {"input_xxh3", job.input_xxh3},
               {"key", job.key},
-              {"parameters", json::parse(to_json(request.parameters))},
+              {"models", escaped_list(job.models)},
+              {"shapes", {job.shapes.first, job.shapes.end}},
+              {"library", escaped(job.library.string())},
+              {"partitions", job.partitions},
+              {"buffer_bytes", job.buffer_bytes},
+              {"parameters", json::parse(to_json(request.parameters.surface))},
+              {"recognition", json::parse(to_json(request.parameters.recognition))},
               {"sidecar_only", request.sidecar_only},
               {"threads", request.threads},
               {"memory_bytes", request.memory_bytes},
@@ -91,18 +158,32 @@ std::string to_line(const JobRequest& request) {
 
 JobRequest job_request_from(const std::string& line) {
   return reading("job", line, [](const json& object) {
+    const auto text = [&](const char* name) {
+      return unescaped(object.at(name).get<std::string>());
+    };
     JobRequest request;
-    request.job.input = unescaped(object.at("input").get<std::string>());
-    object.at("input_name").get_to(request.job.input_name);
-    object.at("name").get_to(request.job.name);
-    request.job.output = unescaped(object.at("output").get<std::string>());
-    object.at("input_xxh3").get_to(request.job.input_xxh3);
-    object.at("key").get_to(request.job.key);
-    request.parameters = parameters_from_json(object.at("parameters").dump());
+    Job& job = request.job;
+    job.kind = kind_from(object.at("kind").get<std::string>());
+    job.input = text("input");
+    object.at("input_name").get_to(job.input_name);
+    job.name = text("name");
+    job.output = text("output");
+    object.at("input_xxh3").get_to(job.input_xxh3);
+    object.at("key").get_to(job.key);
+    for (const json& model : object.at("models"))
+      job.models.push_back(unescaped(model.get<std::string>()));
+    object.at("shapes").at(0).get_to(job.shapes.first);
+    object.at("shapes").at(1).get_to(job.shapes.end);
+    job.library = text("library");
+    object.at("partitions").get_to(job.partitions);
+    object.at("buffer_bytes").get_to(job.buffer_bytes);
+    request.parameters.surface = parameters_from_json(object.at("parameters").dump());
+    request.parameters.recognition =
+        recognition_parameters_from_json(object.at("recognition").dump());
     object.at("sidecar_only").get_to(request.sidecar_only);
     object.at("threads").get_to(request.threads);
     object.at("memory_bytes").get_to(request.memory_bytes);
-    request.log = unescaped(object.at("log").get<std::string>());
+    request.log = text("log");
     return request;
   });
 }
@@ -112,7 +193,7 @@ std::string to_line(const JobReply& reply) {
     case JobReply::Kind::kWorked:
       return json{{"worked", reply.worked}}.dump();
     case JobReply::Kind::kDone:
-      return json{{"done", reply.result ? to_json_object(*reply.result) : json()},
+      return json{{"done", to_json_object(reply.result)},
                   {"worked", reply.worked},
                   {"cpu_seconds", reply.cpu_seconds},
                   {"peak_bytes", reply.peak_bytes}}
@@ -136,7 +217,7 @@ JobReply job_reply_from(const std::string& line) {
       failed->get_to(reply.error);
     } else if (const auto done = object.find("done"); done != object.end()) {
       reply.kind = JobReply::Kind::kDone;
-      if (!done->is_null()) reply.result = result_from(*done);
+      reply.result = result_from(*done);
     } else {
       reply.kind = JobReply::Kind::kWorked;
       return reply;

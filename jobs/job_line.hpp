@@ -2,21 +2,20 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 
 #include "jobs/config.hpp"
-#include "jobs/plan.hpp"
-#include "jobs/stages/surface_job.hpp"
+#include "jobs/job.hpp"
+#include "jobs/job_result.hpp"
 
 namespace semigeo::jobs {
 
 // What a run and the processes that do its jobs say to each other: one line of JSON each.
 
-/// A surface job, to be done by another process.
+/// A job, to be done by another process.
 struct JobRequest {
-  SurfaceJob job;
-  SurfaceParameters parameters;
+  Job job;
+  JobParameters parameters;
   bool sidecar_only = false;       ///< make the dataset's .xdmf again, if that is possible
   int threads = 1;                 ///< at once
   std::uint64_t memory_bytes = 0;  ///< address space; 0: no limit
@@ -27,11 +26,11 @@ struct JobRequest {
 struct JobReply {
   enum class Kind { kWorked, kDone, kFailed };
   Kind kind = Kind::kFailed;
-  std::int64_t worked = 0;                 ///< vertices times levels since the last reply
-  std::string error;                       ///< of a failed job: one sentence
-  std::optional<SurfaceJobResult> result;  ///< of a job that made a dataset
-  double cpu_seconds = 0;                  ///< of this job
-  double peak_bytes = 0;                   ///< resident at once, of the process while it ran
+  std::int64_t worked = 0;  ///< vertices times levels since the last reply
+  std::string error;        ///< of a failed job: one sentence
+  JobResult result;         ///< of a job that is done
+  double cpu_seconds = 0;   ///< of this job
+  double peak_bytes = 0;    ///< resident at once, of the process while it ran
 };
 
 std::string to_line(const JobRequest& request);

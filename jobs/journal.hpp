@@ -22,7 +22,7 @@ struct RunStarted {
 };
 
 struct JobStarted {
-  std::string job = {};  ///< "surface <name of the dataset>"
+  std::string job = {};  ///< "surface <name of the dataset>", "library library.h5", ...
   std::string key = {};  ///< under which its output will be up to date
   friend bool operator==(const JobStarted&, const JobStarted&) = default;
 };
@@ -31,8 +31,8 @@ struct JobStarted {
 struct JobEnded {
   std::string job = {};
   std::string key = {};
-  std::string state = {};  ///< "done" or "failed"
-  std::string error = {};  ///< of a failed job: one sentence
+  std::string state = {};  ///< "done", "failed", "skipped", or "up to date" after all
+  std::string error = {};  ///< of a failed or skipped job: one sentence
   std::string format = {};
   double seconds = 0;
   double cpu_seconds = 0;

@@ -17,8 +17,9 @@
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "jobs/drain.hpp"
+#include "jobs/job_estimates.hpp"
+#include "jobs/job_inputs.hpp"
 #include "jobs/job_line.hpp"
-#include "jobs/scan_size.hpp"
 
 namespace semigeo::jobs {
 namespace {
@@ -72,7 +73,7 @@ std::string cause_of(const ChildProcesses::Ended& ended, double timeout) {
 
 class Executor {
  public:
-  Executor(const std::vector<PlannedJob>& plan, const SurfaceParameters& parameters,
+  Executor(const std::vector<PlannedJob>& plan, const JobParameters& parameters,
            const ExecutorOptions& options, Progress& progress, JobListener* listener)
       : plan_(plan),
         parameters_(parameters),
@@ -80,13 +81,16 @@ class Executor {
         progress_(progress),
         listener_(listener),
         total_(engine::usable_resources()),
+        inputs_(parameters.recognition),
         outcomes_(plan.size()),
-        estimates_(plan.size()),
+        waits_for_(plan.size()),
+        followers_(plan.size()),
         drain_(children_) {
     if (options.threads > 0) total_.cores = options.threads;
     if (options.memory_bytes > 0) total_.bytes = options.memory_bytes;
     if (total_.bytes == 0) total_.bytes = std::uint64_t{1} << 62;  // Linux does not say
     resources_ = engine::Resources(total_);
+    estimates_ = estimates_of(plan_, parameters_, options_.estimates, options_.memory_bytes);
   }
 
   std::vector<JobOutcome> run() {
@@ -111,16 +115,18 @@ class Executor {
   /// What need not run, what cannot, and the order of the rest.
   void sort_out() {
     for (std::size_t i = 0; i < plan_.size(); ++i) {
+      for (const std::size_t before : plan_[i].after) {
+        if (has_ended(outcomes_[before].state)) continue;
+        followers_[before].push_back(i);
+        ++waits_for_[i];
+      }
       if (plan_[i].up_to_date) {
         outcomes_[i].state = JobState::kUpToDate;
       } else if (!plan_[i].error.empty()) {
-        progress_.scan_started(plan_[i].job.name);
+        progress_.job_started(shown_name(i));
         if (listener_ != nullptr) listener_->job_started(plan_[i]);
         fail(i, plan_[i].error);
       } else {
-        if (!plan_[i].sidecar_only)
-          estimates_[i] =
-              options_.estimates.of(scan_size(plan_[i].job.input), parameters_.levels + 1, 1);
         seconds_left_ += estimates_[i].seconds;
         pending_.push_back(i);
       }
@@ -139,19 +145,23 @@ class Executor {
     return static_cast<std::uint64_t>(estimates_[job].peak_bytes);
   }
 
-  bool ends_in_time(std::size_t job) const {
+  bool may_start(std::size_t job) const {
+    if (waits_for_[job] > 0) return false;
     return options_.most_seconds <= 0 ||
            seconds_since(start_) + estimates_[job].seconds / threads_for(job) <=
                options_.most_seconds;
   }
 
   void start_jobs() {
-    if (stopping_) return;
-    while (true) {
+    while (!stopping_) {
       const auto next =
-          std::ranges::find_if(pending_, [this](std::size_t job) { return ends_in_time(job); });
+          std::ranges::find_if(pending_, [this](std::size_t job) { return may_start(job); });
       if (next == pending_.end()) return;
       const std::size_t job = *next;
+      if (!has_inputs(job)) {
+        pending_.erase(next);
+        continue;
+      }
       const engine::Amount wanted = {threads_for(job), bytes_of(job)};
       // What is refused waits at the head of the queue: small jobs behind it must not starve it.
       if (!resources_.admit(wanted)) return;
@@ -160,11 +170,43 @@ class Executor {
     }
   }
 
+  /// Looks at what there is now; ends with what need not run, or cannot.
+  bool has_inputs(std::size_t job) {
+    PlannedJob& planned = plan_[job];
+    if (planned.job.kind == JobKind::kSurface || outcomes_[job].attempts > 0) return true;
+    bool up_to_date = false;
+    try {
+      up_to_date = inputs_.settle(planned.job);
+    } catch (const io::Error& e) {
+      remove_stale_run(planned.job);
+      seconds_left_ -= estimates_[job].seconds;
+      const bool follows = std::ranges::any_of(planned.after, [this](std::size_t before) {
+        return outcomes_[before].state == JobState::kFailed ||
+               outcomes_[before].state == JobState::kSkipped;
+      });
+      if (!follows) {
+        fail(job, e.what());
+        return false;
+      }
+      outcomes_[job].error = e.what();
+      end(job, JobState::kSkipped);
+      return false;
+    }
+    if (up_to_date) {
+      seconds_left_ -= estimates_[job].seconds;
+      end(job, JobState::kUpToDate);
+      return false;
+    }
+    remove_stale_run(planned.job);
+    return true;
+  }
+
   void start(std::size_t job, engine::Amount taken) {
     if (idle_.empty()) idle_.push_back(start_worker());
     const ChildProcesses::Id child = idle_.back();
     idle_.pop_back();
-    const PlannedJob& planned = plan_[job];
+    PlannedJob& planned = plan_[job];
+    planned.job.buffer_bytes = buffer_bytes(options_.memory_bytes);
     const JobRequest request{.job = planned.job,
                              .parameters = parameters_,
                              .sidecar_only = planned.sidecar_only,
@@ -179,7 +221,7 @@ class Executor {
     running_[child] = {job, taken, timeout, Clock::now()};
     outcomes_[job].threads = taken.cores;
     if (outcomes_[job].attempts++ == 0) {
-      progress_.scan_started(planned.job.name);
+      progress_.job_started(shown_name(job));
       if (listener_ != nullptr) listener_->job_started(planned);
     }
   }
@@ -201,7 +243,12 @@ class Executor {
     return options_.worker_log.empty() ? options_.logs / "workers.log" : options_.worker_log;
   }
 
-  fs::path log_of(std::size_t job) const { return options_.logs / (plan_[job].job.name + ".log"); }
+  fs::path log_of(std::size_t job) const { return log_path(options_.logs, plan_[job].job); }
+
+  std::string shown_name(std::size_t job) const {
+    const Job& shown = plan_[job].job;
+    return shown.kind == JobKind::kSurface ? shown.name : job_id(shown);
+  }
 
   std::uint64_t address_space(std::size_t job, int threads) const {
     if (options_.memory_per_job > 0) return options_.memory_per_job;
@@ -242,8 +289,7 @@ class Executor {
     children_.restart_clocks(line.child, 0, 0);
     idle_.push_back(line.child);
     if (reply.kind == JobReply::Kind::kDone) {
-      outcome.state = JobState::kDone;
-      end(job);
+      end(job, JobState::kDone);
     } else {
       fail(job, reply.error);
     }
@@ -263,7 +309,7 @@ class Executor {
     if (ended.signal == SIGTERM && drain_.requests() > 0) return;
     const std::string cause = cause_of(ended, was.timeout);
     if (!stopping_ && outcomes_[was.job].attempts <= options_.retries) {
-      progress_.say("again: " + planned.job.input.string() + ": " + cause);
+      progress_.say("again: " + subject_of(planned.job).string() + ": " + cause);
       seconds_left_ += estimates_[was.job].seconds;
       pending_.insert(pending_.begin(), was.job);
       return;
@@ -273,8 +319,10 @@ class Executor {
         printed.empty()
             ? "; "
             : "; it last said: " + printed + "; see " + log_of(was.job).string() + ", and ";
-    fail(was.job, planned.job.input.string() + ": its job " + cause + where +
-                      "run again or leave the scan out");
+    const bool has_scan = planned.job.kind == JobKind::kSurface;
+    fail(was.job, subject_of(planned.job).string() + ": its " +
+                      (has_scan ? "" : std::string(name_of(planned.job.kind)) + ' ') + "job " +
+                      cause + where + "run again" + (has_scan ? " or leave the scan out" : ""));
   }
 
   void release(std::map<ChildProcesses::Id, Running>::iterator at) {
@@ -284,16 +332,16 @@ class Executor {
   }
 
   void fail(std::size_t job, const std::string& error) {
-    outcomes_[job].state = JobState::kFailed;
     outcomes_[job].error = error;
     progress_.say("failed: " + error);
-    end(job);
+    end(job, JobState::kFailed);
     if (options_.fail_fast) stopping_ = true;
   }
 
-  void end(std::size_t job) {
-    const bool done = outcomes_[job].state == JobState::kDone;
-    progress_.scan_ended(done, bytes_to_read(plan_[job]));
+  void end(std::size_t job, JobState state) {
+    outcomes_[job].state = state;
+    for (const std::size_t follower : followers_[job]) --waits_for_[follower];
+    progress_.job_ended(state != JobState::kFailed, bytes_to_read(plan_[job]));
     if (listener_ != nullptr) listener_->job_ended(plan_[job], outcomes_[job]);
   }
 
@@ -310,17 +358,20 @@ class Executor {
     for (const auto& [child, running] : running_) children_.kill(child);
   }
 
-  const std::vector<PlannedJob>& plan_;
-  const SurfaceParameters& parameters_;
+  std::vector<PlannedJob> plan_;  ///< jobs of the inputs that are there, once they have begun
+  const JobParameters& parameters_;
   const ExecutorOptions& options_;
   Progress& progress_;
   JobListener* listener_;
   engine::Amount total_;
   engine::Resources resources_{{}};
+  JobInputs inputs_;
   std::vector<JobOutcome> outcomes_;
-  std::vector<Estimate> estimates_;
-  std::vector<std::size_t> pending_;  ///< the longest first
-  double seconds_left_ = 0;           ///< of one thread, for what is pending or running
+  std::vector<Estimate> estimates_ = {};
+  std::vector<std::size_t> waits_for_;               ///< so many jobs that have not ended
+  std::vector<std::vector<std::size_t>> followers_;  ///< jobs that wait for this one
+  std::vector<std::size_t> pending_;                 ///< the longest first
+  double seconds_left_ = 0;  ///< of one thread, for what is pending or running
   std::map<ChildProcesses::Id, Running> running_;
   std::vector<ChildProcesses::Id> idle_;
   bool stopping_ = false;
@@ -332,11 +383,34 @@ class Executor {
 
 }  // namespace
 
+std::string_view name_of(JobState state) {
+  switch (state) {
+    case JobState::kDone:
+      return "done";
+    case JobState::kUpToDate:
+      return "up to date";
+    case JobState::kFailed:
+      return "failed";
+    case JobState::kSkipped:
+      return "skipped";
+    case JobState::kNotRun:
+      break;
+  }
+  return "not run";
+}
+
 std::uintmax_t bytes_to_read(const PlannedJob& planned) {
-  if (planned.up_to_date || planned.sidecar_only) return 0;
+  if (planned.up_to_date || planned.sidecar_only || planned.job.kind != JobKind::kSurface) return 0;
   std::error_code error;
   const auto size = fs::file_size(planned.job.input, error);
   return error ? 0 : size;
+}
+
+fs::path log_path(const fs::path& logs, const Job& job) {
+  // Names of datasets end in that of a format, or in a hash.
+  const std::string kind =
+      job.kind == JobKind::kSurface ? "" : '.' + std::string(name_of(job.kind));
+  return logs / (job.name + kind + ".log");
 }
 
 void remove_empty_logs(const fs::path& folder) {
@@ -347,9 +421,8 @@ void remove_empty_logs(const fs::path& folder) {
 }
 
 std::vector<JobOutcome> run_jobs(const std::vector<PlannedJob>& plan,
-                                 const SurfaceParameters& parameters,
-                                 const ExecutorOptions& options, Progress& progress,
-                                 JobListener* listener) {
+                                 const JobParameters& parameters, const ExecutorOptions& options,
+                                 Progress& progress, JobListener* listener) {
   std::set<fs::path> folders = {options.logs};
   for (const PlannedJob& planned : plan) folders.insert(planned.job.output.parent_path());
   for (const fs::path& folder : folders) {

@@ -3,14 +3,14 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "jobs/estimates.hpp"
+#include "jobs/job_result.hpp"
 #include "jobs/plan.hpp"
 #include "jobs/progress.hpp"
-#include "jobs/stages/surface_job.hpp"
 
 namespace semigeo::jobs {
 
@@ -18,13 +18,17 @@ enum class JobState {
   kDone,
   kUpToDate,
   kFailed,
-  kNotRun  ///< the run stopped before
+  kSkipped,  ///< what it needs is not there, as a job before it has failed
+  kNotRun    ///< the run stopped before
 };
+
+/// "done", "up to date", "failed", "skipped" or "not run".
+std::string_view name_of(JobState state);
 
 struct JobOutcome {
   JobState state = JobState::kNotRun;
-  std::string error;                       ///< of a failed job: one sentence, and its last lines
-  std::optional<SurfaceJobResult> result;  ///< of a job that made a dataset
+  std::string error;  ///< of a failed or skipped job: one sentence, and its last lines
+  JobResult result;   ///< of a job that is done
   double seconds = 0;
   double cpu_seconds = 0;
   double peak_bytes = 0;
@@ -49,28 +53,38 @@ struct ExecutorOptions {
   std::filesystem::path worker_log = {};
 };
 
+/// Whether nothing more will become of the job: what waits for it need not wait.
+constexpr bool has_ended(JobState state) {
+  return state != JobState::kNotRun;
+}
+
 /// Is told of each job that runs, in the thread that called run_jobs.
 class JobListener {
  public:
   virtual ~JobListener() = default;
   virtual void job_started(const PlannedJob& planned) = 0;
+  /// Also of a job that was skipped, or turned out to be up to date: those were never started.
   virtual void job_ended(const PlannedJob& planned, const JobOutcome& outcome) = 0;
 };
 
-/// By what the time that a job takes is judged: the size of its scan, 0 if that is not read.
+/// By what the time that a job takes is judged: the size of its scan, 0 if it reads none.
 std::uintmax_t bytes_to_read(const PlannedJob& planned);
+
+/// Takes what the job prints.
+std::filesystem::path log_path(const std::filesystem::path& logs, const Job& job);
 
 /// Those that jobs had opened when they were killed. Nobody must be writing into that folder.
 void remove_empty_logs(const std::filesystem::path& folder);
 
 /// Runs the jobs that are not up to date in child processes, which do one job after the other: as
 /// many side by side as cores and memory admit, the longest first; one that takes more than its
-/// share of what is left gets more threads. Whatever a job does to its process - a crash, an
+/// share of what is left gets more threads. A job begins when those before it have ended, well or
+/// not, and takes what they have left (JobInputs); one that finds nothing to begin with is skipped
+/// if one before it has failed. Whatever a job does to its process - a crash, an
 /// endless loop, a memory bomb - is one failed job. The first SIGINT or SIGTERM lets the running
 /// jobs end and starts no more, the second ends them. outcomes[i] belongs to plan[i].
 std::vector<JobOutcome> run_jobs(const std::vector<PlannedJob>& plan,
-                                 const SurfaceParameters& parameters,
-                                 const ExecutorOptions& options, Progress& progress,
-                                 JobListener* listener = nullptr);
+                                 const JobParameters& parameters, const ExecutorOptions& options,
+                                 Progress& progress, JobListener* listener = nullptr);
 
 }  // namespace semigeo::jobs

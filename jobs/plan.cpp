@@ -10,6 +10,7 @@
 #include "io/file_digest.hpp"
 #include "io/utf8.hpp"
 #include "io/xdmf.hpp"
+#include "jobs/job_key.hpp"
 #include "jobs/sources.hpp"
 #include "jobs/verification.hpp"
 
@@ -19,16 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 using Kind = Reason::Kind;
 
-/// Part of every key: raised whenever the same scan and parameters give other bytes.
-constexpr const char* kSurfaceJobVersion = "surface 9";
-std::string key_of(const std::string& name, const std::string& input_xxh3,
-                   const std::string& parameters_json) {
-  return io::xxh3_of_text(std::string(kSurfaceJobVersion) + '\n' + parameters_json + '\n' + name +
-                          '\n' + input_xxh3);
-}
-
 /// What differs between what a dataset was made of and what the job would make it of.
-std::vector<Reason> differences(const io::DatasetOrigin& origin, const SurfaceJob& job,
+std::vector<Reason> differences(const io::DatasetOrigin& origin, const Job& job,
                                 const std::string& parameters_json) {
   std::vector<Reason> reasons;
   if (origin.input_xxh3 != job.input_xxh3)
@@ -36,12 +29,12 @@ std::vector<Reason> differences(const io::DatasetOrigin& origin, const SurfaceJo
   std::ranges::move(parameter_differences(origin.parameters_json, parameters_json),
                     std::back_inserter(reasons));
   // What this program would have called the same thing says whether it would have made the same.
-  if (origin.job_key != key_of(job.name, origin.input_xxh3, origin.parameters_json))
+  if (origin.job_key != surface_key(job.name, origin.input_xxh3, origin.parameters_json))
     reasons.push_back({.kind = Kind::kProgram, .before = origin.creator_version});
   return reasons;
 }
 
-std::vector<Reason> reasons_of_dataset(const SurfaceJob& job, const std::string& parameters_json) {
+std::vector<Reason> reasons_of_dataset(const Job& job, const std::string& parameters_json) {
   try {
     return differences(io::read_origin(job.output), job, parameters_json);
   } catch (const io::Error& error) {
@@ -51,7 +44,7 @@ std::vector<Reason> reasons_of_dataset(const SurfaceJob& job, const std::string&
 
 /// Compares the dataset in the archive, if there is one, with what the job would make.
 void decide(PlannedJob& planned, const std::string& parameters_json, DigestCache& cache) {
-  const SurfaceJob& job = planned.job;
+  const Job& job = planned.job;
   std::error_code ignored;
   if (!fs::exists(job.output, ignored)) {
     planned.reasons = {{.kind = Kind::kNoDataset}};
@@ -77,18 +70,9 @@ bool sidecar_is_right(const fs::path& dataset) {
 
 }  // namespace
 
-std::string job_id(const SurfaceJob& job) {
-  return "surface " + job.name;
-}
-
 std::string_view state_of(const PlannedJob& planned) {
   if (!planned.error.empty()) return "unreadable";
   return planned.up_to_date ? "up to date" : "would run";
-}
-
-std::string job_key(const std::string& name, const std::string& input_xxh3,
-                    const SurfaceParameters& parameters) {
-  return key_of(name, input_xxh3, to_json(parameters));
 }
 
 std::vector<PlannedJob> plan_jobs(const RunConfig& config) {
@@ -115,12 +99,12 @@ std::vector<PlannedJob> plan_jobs(const RunConfig& config, const std::vector<Fou
                                     const auto keys = cache.dataset_keys(name);
                                     return keys && keys->input_xxh3 == xxh3;
                                   });
-  const std::string parameters_json = to_json(config.surface);
+  const std::string parameters_json = to_json(config.jobs.surface);
   for (std::size_t i = 0; i < plan.size(); ++i) {
-    SurfaceJob& job = plan[i].job;
+    Job& job = plan[i].job;
     job.name = names[i];
     job.output = dataset_path(config.archive, job.name);
-    job.key = key_of(job.name, job.input_xxh3, parameters_json);
+    job.key = surface_key(job.name, job.input_xxh3, parameters_json);
     if (plan[i].error.empty()) decide(plan[i], parameters_json, cache);
   }
   return plan;
@@ -130,6 +114,7 @@ void verify_plan(std::vector<PlannedJob>& plan, int at_once) {
   std::vector<PlannedJob*> jobs;
   std::vector<fs::path> datasets;
   for (PlannedJob& planned : plan) {
+    if (planned.job.kind != JobKind::kSurface) continue;
     if (!planned.up_to_date && !planned.sidecar_only) continue;
     jobs.push_back(&planned);
     datasets.push_back(planned.job.output);
@@ -153,7 +138,8 @@ void verify_plan(std::vector<PlannedJob>& plan, int at_once) {
 void record_sources(const fs::path& archive, const std::vector<PlannedJob>& plan) {
   Sources sources = Sources::read(archive);
   for (const PlannedJob& planned : plan)
-    if (planned.error.empty()) sources.claim(planned.job.name, planned.scan);
+    if (planned.job.kind == JobKind::kSurface && planned.error.empty())
+      sources.claim(planned.job.name, planned.scan);
   sources.write(archive);
 }
 

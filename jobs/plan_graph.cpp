@@ -8,11 +8,31 @@
 namespace semigeo::jobs {
 namespace {
 
-std::string dataset_state(const PlannedJob& planned) {
+std::string output_state(const PlannedJob& planned) {
+  using Kind = Reason::Kind;
   if (!planned.error.empty()) return "unknown";
   if (planned.up_to_date || planned.sidecar_only) return "up to date";
-  const bool missing = planned.reasons.front().kind == Reason::Kind::kNoDataset;
-  return missing ? "missing" : "out of date";
+  const Kind first = planned.reasons.front().kind;
+  return first == Kind::kNoDataset || first == Kind::kNoOutput ? "missing" : "out of date";
+}
+
+std::string output_id(const Job& job) {
+  return std::string(output_name_of(job.kind)) + ' ' + job.output.string();
+}
+
+bool is_job(const GraphNode& node) {
+  return std::ranges::any_of(kJobKinds, [&](JobKind kind) { return node.kind == name_of(kind); });
+}
+
+/// The file that a job reads but none makes: of surface jobs the scan, of triplets jobs a dataset.
+GraphNode input_of(const PlannedJob& planned) {
+  const bool has_scan = planned.job.kind == JobKind::kSurface;
+  const std::string kind = has_scan ? "scan" : "dataset";
+  const std::string name = has_scan ? planned.scan.string() : planned.job.input.string();
+  return {.id = kind + ' ' + name,
+          .kind = kind,
+          .name = name,
+          .state = planned.error.empty() ? "readable" : "unreadable"};
 }
 
 /// Between quotes; names may hold anything.
@@ -34,22 +54,23 @@ std::string quoted(const std::string& text) {
 std::vector<GraphNode> graph_of(const std::vector<PlannedJob>& plan) {
   std::vector<GraphNode> graph;
   for (const PlannedJob& planned : plan) {
-    const std::string scan = planned.scan.string();
-    const std::string dataset = planned.job.output.string();
-    graph.push_back({.id = "scan " + scan,
-                     .kind = "scan",
-                     .name = scan,
-                     .state = planned.error.empty() ? "readable" : "unreadable"});
-    graph.push_back({.id = job_id(planned.job),
-                     .kind = "surface",
-                     .name = planned.job.name,
-                     .state = std::string(state_of(planned)),
-                     .dependencies = {"scan " + scan}});
-    graph.push_back({.id = "dataset " + dataset,
-                     .kind = "dataset",
-                     .name = dataset,
-                     .state = dataset_state(planned),
-                     .dependencies = {job_id(planned.job)}});
+    const Job& job = planned.job;
+    GraphNode node{.id = job_id(job),
+                   .kind = std::string(name_of(job.kind)),
+                   .name = job.name,
+                   .state = std::string(state_of(planned))};
+    for (const std::size_t before : planned.after)
+      node.dependencies.push_back(output_id(plan[before].job));
+    if (job.kind <= JobKind::kTriplets && planned.after.empty()) {
+      graph.push_back(input_of(planned));
+      node.dependencies.push_back(graph.back().id);
+    }
+    graph.push_back(node);
+    graph.push_back({.id = output_id(job),
+                     .kind = std::string(output_name_of(job.kind)),
+                     .name = job.output.string(),
+                     .state = output_state(planned),
+                     .dependencies = {node.id}});
   }
   return graph;
 }
@@ -69,10 +90,9 @@ std::string to_json(const std::vector<GraphNode>& graph) {
 std::string to_dot(const std::vector<GraphNode>& graph) {
   std::string text = "digraph semigeo {\n  rankdir=LR;\n";
   for (const GraphNode& node : graph) {
-    const bool is_job = node.kind == "surface";
-    text += "  " + quoted(node.id) + " [shape=" + (is_job ? "box" : "note") +
+    text += "  " + quoted(node.id) + " [shape=" + (is_job(node) ? "box" : "note") +
             ", style=" + (node.state == "up to date" ? "dashed" : "solid") +
-            ", label=" + quoted((is_job ? node.id : node.name) + "\n" + node.state) + "];\n";
+            ", label=" + quoted((is_job(node) ? node.id : node.name) + "\n" + node.state) + "];\n";
   }
   for (const GraphNode& node : graph)
     for (const std::string& dependency : node.dependencies)

@@ -10,15 +10,16 @@ namespace semigeo::jobs {
 /// A file, or a job that makes one of others.
 struct GraphNode {
   std::string id;     ///< of a job its name in the journal; of a file its kind and path
-  std::string kind;   ///< "scan", "surface" (a job) or "dataset"
-  std::string name;   ///< path of a file, name of a job's dataset
+  std::string kind;   ///< of a job "surface", "triplets", ...; of a file "scan", "dataset", ...
+  std::string name;   ///< path of a file, name of a job
   std::string state;  ///< "up to date", "would run", "unreadable", ...
   std::vector<std::string> dependencies = {};  ///< identifiers
   friend bool operator==(const GraphNode&, const GraphNode&) = default;
 };
 
-/// Scan, surface job and dataset of everything planned, in the order of the plan; dependencies come
-/// before what depends on them.
+/// Every job that is planned and the file that it makes, in the order of the plan; scans, and
+/// datasets that no job makes, before the jobs that read them. Dependencies come before what
+/// depends on them.
 std::vector<GraphNode> graph_of(const std::vector<PlannedJob>& plan);
 
 /// {"nodes": [{"id", "kind", "name", "state", "dependencies"}]}.

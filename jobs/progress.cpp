@@ -62,8 +62,8 @@ std::string short_duration(double seconds) {
   return format("%ld h %02ld min", whole / 3600, whole % 3600 / 60);
 }
 
-Progress::Progress(std::int64_t scans, std::uintmax_t bytes)
-    : scans_(scans), bytes_(bytes), terminal_(isatty(STDERR_FILENO) != 0) {}
+Progress::Progress(std::int64_t jobs, std::uintmax_t bytes)
+    : jobs_(jobs), bytes_(bytes), terminal_(isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
   if (live_) std::fputs("\r\033[K", stderr);
@@ -75,13 +75,13 @@ void Progress::worked(std::int64_t amount) {
   if (lock) show(false);
 }
 
-void Progress::scan_started(const std::string& name) {
+void Progress::job_started(const std::string& name) {
   const std::scoped_lock lock(mutex_);
   current_ = name;
   show(true);
 }
 
-void Progress::scan_ended(bool ok, std::uintmax_t bytes) {
+void Progress::job_ended(bool ok, std::uintmax_t bytes) {
   const std::scoped_lock lock(mutex_);
   ++(ok ? done_ : failed_);
   bytes_done_ += bytes;
@@ -96,7 +96,7 @@ void Progress::say(const std::string& line) {
 
 std::string Progress::counts() const {
   const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
-  const std::int64_t left = scans_ - done_ - failed_;
+  const std::int64_t left = jobs_ - done_ - failed_;
   std::string text = format("%ld done, %ld failed, %ld left", static_cast<long>(done_),
                             static_cast<long>(failed_), static_cast<long>(left));
   if (elapsed > 0 && vertex_levels_ > 0)

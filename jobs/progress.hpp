@@ -15,14 +15,14 @@ namespace semigeo::jobs {
 /// coloured).
 class Progress : public engine::Observer {
  public:
-  /// `scans` are to be done, of `bytes` bytes in all; time left is judged by bytes.
-  Progress(std::int64_t scans, std::uintmax_t bytes);
+  /// `jobs` are to be done, which read `bytes` bytes of scans; time left is judged by bytes.
+  Progress(std::int64_t jobs, std::uintmax_t bytes);
   ~Progress() override;
 
   void worked(std::int64_t amount) override;
 
-  void scan_started(const std::string& name);
-  void scan_ended(bool ok, std::uintmax_t bytes);
+  void job_started(const std::string& name);
+  void job_ended(bool ok, std::uintmax_t bytes);
   /// Prints a line of its own, not disturbing the live line.
   void say(const std::string& line);
 
@@ -33,7 +33,7 @@ class Progress : public engine::Observer {
   void show(bool force);
   std::string counts() const;
 
-  const std::int64_t scans_;
+  const std::int64_t jobs_;
   const std::uintmax_t bytes_;
   const bool terminal_;
   const Clock::time_point start_ = Clock::now();

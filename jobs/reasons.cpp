@@ -42,9 +42,17 @@ std::string_view name_of(Kind kind) {
     case Kind::kNoSidecar:
       return "no sidecar";
     case Kind::kDamagedSidecar:
+      return "damaged sidecar";
+    case Kind::kNoOutput:
+      return "no output";
+    case Kind::kUnusableOutput:
+      return "unusable output";
+    case Kind::kDamagedOutput:
+      return "damaged output";
+    case Kind::kInputs:
       break;
   }
-  return "damaged sidecar";
+  return "inputs";
 }
 
 std::string in_words(const Reason& reason) {
@@ -65,9 +73,18 @@ std::string in_words(const Reason& reason) {
     case Kind::kNoSidecar:
       return ".xdmf: missing; it is made from the dataset";
     case Kind::kDamagedSidecar:
+      return ".xdmf: does not say what the dataset holds; it is made from the dataset";
+    case Kind::kNoOutput:
+      return "no " + reason.before + " yet";
+    case Kind::kUnusableOutput:
+      return reason.before + ": damaged, incomplete or of another version";
+    case Kind::kDamagedOutput:
+      return reason.before + ": " + reason.now;
+    case Kind::kInputs:
       break;
   }
-  return ".xdmf: does not say what the dataset holds; it is made from the dataset";
+  return reason.now + ", the parameters or the program: not those that the " + reason.before +
+         " was made of";
 }
 
 std::string in_short(const std::vector<Reason>& reasons) {
@@ -76,6 +93,11 @@ std::string in_short(const std::vector<Reason>& reasons) {
   if (has(Kind::kNoDataset)) return "no dataset yet";
   if (has(Kind::kUnusableDataset)) return "the dataset is damaged, incomplete or of another format";
   if (has(Kind::kDamagedArrays)) return "its arrays are damaged";
+  const Reason& first = reasons.front();
+  if (has(Kind::kNoOutput)) return in_words(first);
+  if (has(Kind::kUnusableOutput) || has(Kind::kDamagedOutput))
+    return "the " + first.before + " is damaged, incomplete or of another version";
+  if (has(Kind::kInputs)) return first.now + ", the parameters or the program changed";
   if (has(Kind::kNoSidecar)) return "its .xdmf is missing";
   if (has(Kind::kDamagedSidecar)) return "its .xdmf is damaged";
   std::vector<std::string> changed;

@@ -16,7 +16,12 @@ struct Reason {
     kParameter,  ///< it has another value
     kProgram,    ///< it makes other bytes of the same scan and parameters
     kNoSidecar,
-    kDamagedSidecar
+    kDamagedSidecar,
+    // Of what is made of datasets. `before` is what the output is called.
+    kNoOutput,
+    kUnusableOutput,  ///< damaged, incomplete, of another version
+    kDamagedOutput,
+    kInputs  ///< what it was made of (`now`), the parameters or the program
   };
   Kind kind;
   std::string parameter = {};  ///< its name

@@ -47,20 +47,20 @@ void RunJournal::job_started(const PlannedJob& planned) {
 void RunJournal::job_ended(const PlannedJob& planned, const JobOutcome& outcome) {
   JobEnded ended{.job = job_id(planned.job),
                  .key = planned.job.key,
-                 .state = outcome.state == JobState::kDone ? "done" : "failed",
+                 .state = std::string(name_of(outcome.state)),
                  .error = outcome.error,
                  .seconds = outcome.seconds,
                  .cpu_seconds = outcome.cpu_seconds,
                  .peak_bytes = outcome.peak_bytes,
                  .threads = outcome.threads};
-  if (!planned.sidecar_only) {
+  if (planned.job.kind == JobKind::kSurface && !planned.sidecar_only) {
     ScanSize size = scan_size(planned.job.input);
     ended.format = std::move(size.format);
     ended.input_bytes = static_cast<std::int64_t>(size.bytes);
   }
-  if (outcome.result) {
-    ended.vertices = outcome.result->vertices;
-    ended.levels = outcome.result->levels;
+  if (const auto* result = std::get_if<SurfaceJobResult>(&outcome.result)) {
+    ended.vertices = result->vertices;
+    ended.levels = result->levels;
   }
   write(ended);
 }

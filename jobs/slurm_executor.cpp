@@ -13,6 +13,7 @@
 #include "io/error.hpp"
 #include "jobs/digest_cache.hpp"
 #include "jobs/drain.hpp"
+#include "jobs/job_inputs.hpp"
 #include "jobs/slurm_commands.hpp"
 #include "jobs/task_list.hpp"
 #include "jobs/utc_time.hpp"
@@ -33,14 +34,6 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw io::Error(folder, "", "cannot be created: " + error.message(),
-                    "check the archive, its permissions and the free space");
-}
-
 /// A network disk may know the names in a folder as they were a while ago, until it is opened.
 void look_again(const fs::path& folder) {
   std::error_code ignored;
@@ -49,7 +42,7 @@ void look_again(const fs::path& folder) {
 
 class SlurmRun {
  public:
-  SlurmRun(const std::vector<PlannedJob>& plan, const SurfaceParameters& parameters,
+  SlurmRun(const std::vector<PlannedJob>& plan, const JobParameters& parameters,
            const fs::path& archive, const ExecutorOptions& options, const SlurmOptions& slurm,
            Progress& progress, JobListener* listener)
       : plan_(plan),
@@ -57,6 +50,7 @@ class SlurmRun {
         archive_(fs::absolute(archive)),
         options_(options),
         slurm_(slurm),
+        inputs_(parameters.recognition),
         progress_(progress),
         listener_(listener),
         outcomes_(plan.size()),
@@ -69,10 +63,11 @@ class SlurmRun {
     const std::vector<std::size_t> jobs = sort_out();
     if (jobs.empty() || stopping_) return {std::move(outcomes_), {}};
     folder_ = archive_ / "slurm" / (utc_time() + '-' + std::to_string(getpid()));
-    make_folder(folder_ / "results");
     SlurmOutcome outcome;
     try {
-      submit(surface_stage(plan_, jobs, parameters_, options_, slurm_, {archive_, folder_}));
+      for (SlurmStage& stage :
+           stages_of(plan_, jobs, parameters_, options_, slurm_, {archive_, folder_}))
+        submit(std::move(stage));
     } catch (...) {
       if (stages_.empty()) remove_folder();  // nobody is going to read it
       throw;
@@ -95,6 +90,7 @@ class SlurmRun {
     bool started = false;
     bool gone = false;   ///< was not in the queue the last time
     bool ended = false;  ///< nothing more will come of it
+    bool lost = false;   ///< it ended without a result for some of its jobs
   };
   struct WatchedStage {
     SlurmStage stage;
@@ -156,7 +152,8 @@ class SlurmRun {
     if (!queue) return;
     const fs::path& list = watched.stage.list;
     look_again(list.parent_path() / "results");
-    look_again(archive_ / "scans");
+    for (const std::vector<std::size_t>& jobs : watched.stage.tasks)
+      look_again(plan_[jobs.front()].job.output.parent_path());
     for (int number = 0; number < watched.stage.array.tasks; ++number) {
       WatchedTask& task = watched.tasks[static_cast<std::size_t>(number)];
       if (task.ended) continue;
@@ -174,7 +171,7 @@ class SlurmRun {
       const bool all_settled =
           std::ranges::all_of(task.jobs, [this](std::size_t job) { return settled_[job]; });
       // Results may be a moment late on a network disk.
-      if (all_settled || task.gone) end(task, log_of_task(list, number));
+      if (all_settled || task.gone) end(watched.stage, task, log_of_task(list, number));
       task.gone = true;
     }
   }
@@ -213,34 +210,51 @@ class SlurmRun {
     task.seen = stamp;
     task.results = read_results(file);
     for (const std::size_t job : task.jobs) {
-      const auto at = task.results.find(plan_[job].job.name);
+      const auto at = task.results.find(job_id(plan_[job].job));
       if (settled_[job] || at == task.results.end()) continue;
-      const bool done = is_complete(plan_[job].job);
+      const bool done = has_output(job);
       if (done == (at->second.state == JobState::kDone) && at->second.state != JobState::kNotRun)
         settle(job, at->second);
     }
   }
 
-  /// The datasets themselves have the last word.
-  void end(WatchedTask& task, const fs::path& log) {
+  /// Of what the jobs before it have left.
+  bool has_output(std::size_t job) {
+    Job now = plan_[job].job;
+    try {
+      return inputs_.settle(now);
+    } catch (const io::Error&) {
+      return false;
+    }
+  }
+
+  /// The outputs themselves have the last word.
+  void end(const SlurmStage& stage, WatchedTask& task, const fs::path& log) {
     task.ended = true;
+    // Slurm cancels what waits for a task that was killed.
+    const bool waited_in_vain =
+        !task.started && std::ranges::any_of(stage.after, [this](std::size_t before) {
+          return std::ranges::any_of(stages_[before].tasks, &WatchedTask::lost);
+        });
     for (const std::size_t job : task.jobs) {
       if (settled_[job]) continue;
-      const SurfaceJob& surface = plan_[job].job;
-      const auto at = task.results.find(surface.name);
+      const Job& planned = plan_[job].job;
+      const auto at = task.results.find(job_id(planned));
       JobOutcome outcome = at == task.results.end() ? JobOutcome{} : at->second;
-      const bool was_cancelled = ending_ || (stopping_ && !task.started);
-      if (is_complete(surface)) {
+      const bool was_cancelled = ending_ || (stopping_ && !task.started) || waited_in_vain;
+      task.lost |= at == task.results.end() || outcome.state == JobState::kNotRun;
+      if (has_output(job)) {
         outcome.state = JobState::kDone;
         outcome.error.clear();
       } else if (at == task.results.end() && !was_cancelled) {
         outcome.state = JobState::kFailed;
-        outcome.error = surface.input.string() + ": its task ended without a result; see " +
+        outcome.error = subject_of(planned).string() + ": its task ended without a result; see " +
                         log.string() + ", and run again";
       } else if (outcome.state == JobState::kDone) {
         outcome.state = JobState::kFailed;
-        outcome.error = surface.input.string() + ": its dataset was made, but is not at " +
-                        surface.output.string() +
+        outcome.error = subject_of(planned).string() + ": its " +
+                        std::string(output_name_of(planned.kind)) + " was made, but is not at " +
+                        planned.output.string() +
                         "; check that the archive is the same folder on all machines";
       }
       if (outcome.state != JobState::kNotRun) settle(job, std::move(outcome));
@@ -250,7 +264,8 @@ class SlurmRun {
   void start(std::size_t job) {
     if (settled_[job] || outcomes_[job].attempts > 0) return;
     outcomes_[job].attempts = 1;
-    progress_.scan_started(plan_[job].job.name);
+    const Job& started = plan_[job].job;
+    progress_.job_started(started.kind == JobKind::kSurface ? started.name : job_id(started));
     if (listener_ != nullptr) listener_->job_started(plan_[job]);
   }
 
@@ -259,12 +274,26 @@ class SlurmRun {
     settled_[job] = true;
     outcomes_[job] = std::move(outcome);
     const JobOutcome& known = outcomes_[job];
-    if (known.result) progress_.worked(known.result->vertices * known.result->levels);
-    const bool done = known.state == JobState::kDone;
+    if (const auto* result = std::get_if<SurfaceJobResult>(&known.result))
+      progress_.worked(result->vertices * result->levels);
+    if (known.state == JobState::kFailed && follows_failure(job))
+      outcomes_[job].state = JobState::kSkipped;
+    const bool done = known.state != JobState::kFailed;
     if (!done) progress_.say("failed: " + known.error);
-    progress_.scan_ended(done, bytes_to_read(plan_[job]));
+    progress_.job_ended(done, bytes_to_read(plan_[job]));
     if (listener_ != nullptr) listener_->job_ended(plan_[job], known);
     if (!done && options_.fail_fast) cancel(false);
+  }
+
+  /// Whether what the job needs is not there because of another failure.
+  bool follows_failure(std::size_t job) const {
+    const std::vector<std::size_t>& after = plan_[job].after;
+    return std::ranges::any_of(after,
+                               [this](std::size_t before) {
+                                 return outcomes_[before].state == JobState::kFailed ||
+                                        outcomes_[before].state == JobState::kSkipped;
+                               }) &&
+           outcomes_[job].threads == 0;  // it never ran
   }
 
   void stop_if_asked() {
@@ -303,10 +332,11 @@ class SlurmRun {
   }
 
   const std::vector<PlannedJob>& plan_;
-  const SurfaceParameters& parameters_;
+  const JobParameters& parameters_;
   const fs::path archive_;
   ExecutorOptions options_;
   const SlurmOptions& slurm_;
+  JobInputs inputs_;
   Progress& progress_;
   JobListener* listener_;
   SlurmCommands commands_;
@@ -325,7 +355,7 @@ class SlurmRun {
 
 }  // namespace
 
-SlurmOutcome run_on_slurm(const std::vector<PlannedJob>& plan, const SurfaceParameters& parameters,
+SlurmOutcome run_on_slurm(const std::vector<PlannedJob>& plan, const JobParameters& parameters,
                           const fs::path& archive, const ExecutorOptions& options,
                           const SlurmOptions& slurm, Progress& progress, JobListener* listener) {
   return SlurmRun(plan, parameters, archive, options, slurm, progress, listener).run();

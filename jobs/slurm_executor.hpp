@@ -21,13 +21,13 @@ struct SlurmOutcome {
   std::vector<SubmittedStage> stages;
 };
 
-/// Runs the jobs that are not up to date as an array job of Slurm, several in a task, and waits for
-/// them. All that the run and its tasks know of each other are files below ARCHIVE/slurm/<run>,
-/// which must be at the same place on all machines, as must be the scans and the program. That
-/// folder is removed if every job is done. A job is done if its dataset says so, whatever became of
-/// its task. The first SIGINT or SIGTERM lets the running tasks end and cancels the others, the
-/// second cancels all. io::Error if sbatch fails, or squeue does so for minutes.
-SlurmOutcome run_on_slurm(const std::vector<PlannedJob>& plan, const SurfaceParameters& parameters,
+/// Runs the jobs that are not up to date as array jobs of Slurm, one for each kind, several jobs in
+/// a task, and waits for them. All that the run and its tasks know of each other are files below
+/// ARCHIVE/slurm/<run>, which must be at the same place on all machines, as must be the scans and
+/// the program. That folder is removed if every job is done. A job is done if its output says so,
+/// whatever became of its task. The first SIGINT or SIGTERM lets the running tasks end and cancels
+/// the others, the second cancels all. io::Error if sbatch fails, or squeue does so for minutes.
+SlurmOutcome run_on_slurm(const std::vector<PlannedJob>& plan, const JobParameters& parameters,
                           const std::filesystem::path& archive, const ExecutorOptions& options,
                           const SlurmOptions& slurm, Progress& progress,
                           JobListener* listener = nullptr);

@@ -4,10 +4,14 @@
 #include <chrono>
 #include <functional>
 #include <numeric>
+#include <optional>
+#include <set>
 
 #include "io/atomic_file.hpp"
+#include "io/error.hpp"
 #include "io/xdmf.hpp"
-#include "jobs/scan_size.hpp"
+#include "jobs/job_estimates.hpp"
+#include "jobs/job_inputs.hpp"
 #include "jobs/task_list.hpp"
 
 namespace semigeo::jobs {
@@ -25,6 +29,14 @@ double seconds_since_1970() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    throw io::Error(folder, "", "cannot be created: " + error.message(),
+                    "check the archive, its permissions and the free space");
+}
+
 /// As one word of a shell.
 std::string quoted(const std::string& text) {
   std::string word = "'";
@@ -32,8 +44,10 @@ std::string quoted(const std::string& text) {
   return word + '\'';
 }
 
-/// Tasks judge by headers: what is damaged behind one has to go before they look.
+/// Tasks judge by headers: what is damaged behind one has to go before they look. A task that never
+/// begins must not leave a run of an older dataset to the library.
 void remove_damaged(const PlannedJob& planned) {
+  remove_stale_run(planned.job);
   if (!is_complete(planned.job)) return;
   std::error_code ignored;
   fs::remove(planned.sidecar_only ? io::sidecar_of(planned.job.output) : planned.job.output,
@@ -41,9 +55,10 @@ void remove_damaged(const PlannedJob& planned) {
 }
 
 /// Tasks run in another folder.
-SurfaceJob with_absolute_paths(SurfaceJob job) {
+Job with_absolute_paths(Job job) {
   job.input = fs::absolute(job.input);
   job.output = fs::absolute(job.output);
+  if (!job.library.empty()) job.library = fs::absolute(job.library);
   return job;
 }
 
@@ -92,51 +107,94 @@ TaskSettings size_up(SlurmArray& array, const Needs& needs, const ExecutorOption
   return settings;
 }
 
-}  // namespace
+/// What all stages of a run are made from.
+struct StageInputs {
+  const std::vector<PlannedJob>& plan;
+  const JobParameters& parameters;
+  const ExecutorOptions& options;
+  const SlurmOptions& slurm;
+  const SlurmFolders& folders;
+  std::vector<Estimate> estimates;
+  int threads;
+};
 
-SlurmStage surface_stage(const std::vector<PlannedJob>& plan, const std::vector<std::size_t>& jobs,
-                         const SurfaceParameters& parameters, const ExecutorOptions& options,
-                         const SlurmOptions& slurm, const SlurmFolders& folders) {
-  const int threads = std::max(1, options.threads);
-  std::vector<Estimate> estimates(plan.size());
-  std::vector<double> seconds;
-  for (const std::size_t job : jobs) {
-    if (!plan[job].sidecar_only)
-      estimates[job] =
-          options.estimates.of(scan_size(plan[job].job.input), parameters.levels + 1, 1);
-    seconds.push_back(estimates[job].seconds / threads);
-  }
-  SlurmStage stage{.array = {.name = "semigeo-surface",
-                             .script = folders.run / "surface.sh",
-                             .folder = folders.run,
-                             .cpus = threads,
-                             .options = slurm.sbatch_options},
-                   .list = folders.run / "tasks.jsonl",
+JobRequest request_of(const PlannedJob& planned, const StageInputs& inputs) {
+  return {.job = with_absolute_paths(planned.job),
+          .parameters = inputs.parameters,
+          .sidecar_only = planned.sidecar_only,
+          .threads = inputs.threads,
+          .memory_bytes = inputs.options.memory_per_job,
+          .log = log_path(inputs.folders.archive / "logs", planned.job)};
+}
+
+SlurmStage stage_of(JobKind kind, const std::vector<std::size_t>& jobs, const StageInputs& inputs) {
+  const std::string name(name_of(kind));
+  const fs::path folder = inputs.folders.run / name;
+  SlurmStage stage{.array = {.name = "semigeo-" + name,
+                             .script = folder / "task.sh",
+                             .folder = folder,
+                             .cpus = inputs.threads,
+                             .options = inputs.slurm.sbatch_options},
+                   .list = folder / "tasks.jsonl",
                    .tasks = {}};
+  std::vector<double> seconds;
+  for (const std::size_t job : jobs)
+    seconds.push_back(inputs.estimates[job].seconds / inputs.threads);
   std::vector<std::vector<JobRequest>> requests;
-  for (const std::vector<std::size_t>& places : share_out(seconds, slurm.scans_per_task)) {
+  for (const std::vector<std::size_t>& places : share_out(seconds, inputs.slurm.scans_per_task)) {
     stage.tasks.emplace_back();
     requests.emplace_back();
     for (const std::size_t place : places) {
-      const PlannedJob& planned = plan[jobs[place]];
+      const PlannedJob& planned = inputs.plan[jobs[place]];
       remove_damaged(planned);
       stage.tasks.back().push_back(jobs[place]);
-      requests.back().push_back({.job = with_absolute_paths(planned.job),
-                                 .parameters = parameters,
-                                 .sidecar_only = planned.sidecar_only,
-                                 .threads = threads,
-                                 .memory_bytes = options.memory_per_job,
-                                 .log = folders.archive / "logs" / (planned.job.name + ".log")});
+      requests.back().push_back(request_of(planned, inputs));
     }
   }
   stage.array.tasks = static_cast<int>(stage.tasks.size());
-  TaskSettings settings = size_up(stage.array, needs_of(stage, estimates, threads), options);
-  settings.archive = folders.archive;
+  TaskSettings settings =
+      size_up(stage.array, needs_of(stage, inputs.estimates, inputs.threads), inputs.options);
+  settings.archive = inputs.folders.archive;
+  make_folder(folder / "results");
   io::write_file_atomically(stage.list, task_list_text(settings, requests));
-  io::write_file_atomically(stage.array.script,
-                            "#!/bin/sh\nexec " + quoted(options.program.string()) + " job --list " +
-                                quoted(stage.list.string()) + " --task \"$SLURM_ARRAY_TASK_ID\"\n");
+  io::write_file_atomically(stage.array.script, "#!/bin/sh\nexec " +
+                                                    quoted(inputs.options.program.string()) +
+                                                    " job --list " + quoted(stage.list.string()) +
+                                                    " --task \"$SLURM_ARRAY_TASK_ID\"\n");
   return stage;
+}
+
+}  // namespace
+
+std::vector<SlurmStage> stages_of(const std::vector<PlannedJob>& plan,
+                                  const std::vector<std::size_t>& jobs,
+                                  const JobParameters& parameters, const ExecutorOptions& options,
+                                  const SlurmOptions& slurm, const SlurmFolders& folders) {
+  const StageInputs inputs{
+      .plan = plan,
+      .parameters = parameters,
+      .options = options,
+      .slurm = slurm,
+      .folders = folders,
+      .estimates = estimates_of(plan, parameters, options.estimates, options.memory_bytes),
+      .threads = std::max(1, options.threads)};
+  std::vector<SlurmStage> stages;
+  std::vector<std::optional<std::size_t>> stage_with(plan.size());  // the stage that has the job
+  for (const JobKind kind : kJobKinds) {
+    std::vector<std::size_t> of_kind;
+    std::set<std::size_t> after;
+    for (const std::size_t job : jobs) {
+      if (plan[job].job.kind != kind) continue;
+      of_kind.push_back(job);
+      stage_with[job] = stages.size();
+      for (const std::size_t before : plan[job].after)
+        if (stage_with[before]) after.insert(*stage_with[before]);
+    }
+    if (of_kind.empty()) continue;
+    stages.push_back(stage_of(kind, of_kind, inputs));
+    stages.back().after.assign(after.begin(), after.end());
+  }
+  return stages;
 }
 
 }  // namespace semigeo::jobs

@@ -30,13 +30,15 @@ struct SlurmFolders {
   std::filesystem::path run;  ///< exists; takes the list and the script. Both are absolute
 };
 
-/// Shares surface jobs of the plan out to tasks, judges what a task needs, and writes the list of
-/// tasks and the script that sbatch is given. Time and memory are generous: a task that takes more
-/// is killed with all its jobs. What looks complete but is to be made again, as its arrays are
-/// damaged, is removed, for tasks judge datasets by their headers. io::Error if a file cannot be
-/// written.
-SlurmStage surface_stage(const std::vector<PlannedJob>& plan, const std::vector<std::size_t>& jobs,
-                         const SurfaceParameters& parameters, const ExecutorOptions& options,
-                         const SlurmOptions& slurm, const SlurmFolders& folders);
+/// Shares jobs of the plan out, those of each kind to the tasks of one stage, judges what a task
+/// needs, and writes the lists of tasks and the scripts that sbatch is given, below a folder of
+/// each stage. Stages come in the order of kinds; each waits for those that have jobs before its
+/// own. Time and memory are generous: a task that takes more is killed with all its jobs. What
+/// looks complete but is to be made again is removed, for tasks judge outputs by their headers.
+/// io::Error if a file cannot be written.
+std::vector<SlurmStage> stages_of(const std::vector<PlannedJob>& plan,
+                                  const std::vector<std::size_t>& jobs,
+                                  const JobParameters& parameters, const ExecutorOptions& options,
+                                  const SlurmOptions& slurm, const SlurmFolders& folders);
 
 }  // namespace semigeo::jobs

@@ -39,6 +39,7 @@ class Reader {
     status_.owner = owner;
     status_.datasets = datasets;
     status_.last_run = run;
+    status_.up_to_date = run.up_to_date;
     status_.started = entry.time;
     started_.clear();
     run_ = entry.run;
@@ -47,11 +48,15 @@ class Reader {
   void end(const JobEnded& job) {
     started_.erase(job.job);
     status_.bytes_done += job.input_bytes;
-    if (job.state != "done") {
+    if (job.state == "failed") {
       status_.failed[job.job] = job.error;
       return;
     }
+    if (job.state == "up to date") ++status_.up_to_date;
+    if (job.state == "skipped") ++status_.skipped;
+    if (job.state != "done") return;
     ++status_.done;
+    ++status_.done_by_kind[job.job.substr(0, job.job.find(' '))];
     status_.vertex_levels += static_cast<double>(job.vertices) * static_cast<double>(job.levels);
   }
 
@@ -75,7 +80,8 @@ std::int64_t count_datasets(const fs::path& archive) {
 std::int64_t ArchiveStatus::left() const {
   if (!last_run) return 0;
   const auto failures = static_cast<std::int64_t>(failed.size());
-  return std::max<std::int64_t>(0, last_run->jobs - done - failures);
+  const std::int64_t spared = up_to_date - last_run->up_to_date + skipped;
+  return std::max<std::int64_t>(0, last_run->jobs - done - failures - spared);
 }
 
 std::optional<double> ArchiveStatus::seconds_left() const {

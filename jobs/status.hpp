@@ -19,6 +19,9 @@ struct ArchiveStatus {
   std::optional<LockOwner> owner;      ///< whoever has the archive now
   bool ended = false;                  ///< the journal has its end
   std::int64_t done = 0;
+  std::map<std::string, std::int64_t> done_by_kind = {};  ///< "surface", "triplets", ...
+  std::int64_t up_to_date = 0;                            ///< some only turned out to be
+  std::int64_t skipped = 0;                               ///< as others had failed
   std::map<std::string, double> running;      ///< name of a job, seconds since it was started
   std::map<std::string, std::string> failed;  ///< name of a job, its reason
   double seconds = 0;                         ///< from its start to its last event, or to now

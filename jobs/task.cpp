@@ -26,13 +26,13 @@ class Results : public JobListener {
 
   void job_started(const PlannedJob&) override {}
   void job_ended(const PlannedJob& planned, const JobOutcome& outcome) override {
-    results_[planned.job.name] = outcome;
+    set(planned.job, outcome);
     if (Clock::now() - written_ >= kWriteInterval) write();
   }
-  /// What a first copy of the task has told of a dataset that it made stays.
-  void set(const SurfaceJob& job, const JobOutcome& outcome) {
-    if (outcome.state == JobState::kUpToDate && results_[job.name].state == JobState::kDone) return;
-    results_[job.name] = outcome;
+  /// What a first copy of the task has told of what it made stays.
+  void set(const Job& job, const JobOutcome& outcome) {
+    JobOutcome& known = results_[job_id(job)];
+    if (outcome.state != JobState::kUpToDate || known.state != JobState::kDone) known = outcome;
   }
   void write() {
     io::write_file_atomically(file_, results_text(results_));
@@ -74,7 +74,8 @@ bool run_task(const fs::path& list, int number, const fs::path& program) {
   for (const JobRequest& request : task.jobs) {
     PlannedJob& planned = plan.emplace_back();
     planned.job = request.job;
-    planned.up_to_date = is_complete(request.job);
+    // Of other kinds it depends on what the jobs before have made.
+    planned.up_to_date = request.job.kind == JobKind::kSurface && is_complete(request.job);
     planned.sidecar_only = request.sidecar_only;
     planned.scan = request.job.input;
     bytes += bytes_to_read(planned);

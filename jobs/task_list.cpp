@@ -7,9 +7,7 @@
 #include <numeric>
 #include <string_view>
 
-#include "io/dataset.hpp"
 #include "io/error.hpp"
-#include "io/xdmf.hpp"
 #include "jobs/path_text.hpp"
 
 namespace semigeo::jobs {
@@ -76,7 +74,8 @@ JobReply reply_of(const JobOutcome& outcome) {
                  .result = outcome.result,
                  .cpu_seconds = outcome.cpu_seconds,
                  .peak_bytes = outcome.peak_bytes};
-  if (outcome.state == JobState::kFailed) reply.kind = JobReply::Kind::kFailed;
+  if (outcome.state == JobState::kFailed || outcome.state == JobState::kSkipped)
+    reply.kind = JobReply::Kind::kFailed;
   if (outcome.state == JobState::kDone || outcome.state == JobState::kUpToDate)
     reply.kind = JobReply::Kind::kDone;
   return reply;
@@ -160,9 +159,9 @@ fs::path log_of_task(const fs::path& list, int number) {
 
 std::string results_text(const TaskResults& results) {
   std::string text;
-  for (const auto& [name, outcome] : results) {
+  for (const auto& [job, outcome] : results) {
     const std::string front = json{
-        {"name", name},
+        {"job", escaped(job)},
         {"seconds", outcome.seconds},
         {"threads", outcome.threads},
         {"attempts",
@@ -182,22 +181,12 @@ TaskResults read_results(const fs::path& file) {
       object.at("seconds").get_to(outcome.seconds);
       object.at("threads").get_to(outcome.threads);
       object.at("attempts").get_to(outcome.attempts);
-      results[object.at("name").get<std::string>()] = std::move(outcome);
+      results[unescaped(object.at("job").get<std::string>())] = std::move(outcome);
     } catch (const std::exception&) {
-      continue;  // the dataset itself will tell
+      continue;  // the output itself will tell
     }
   }
   return results;
-}
-
-bool is_complete(const SurfaceJob& job) {
-  try {
-    std::error_code ignored;
-    return fs::exists(io::sidecar_of(job.output), ignored) &&
-           io::read_origin(job.output).job_key == job.key;
-  } catch (const io::Error&) {
-    return false;
-  }
 }
 
 }  // namespace semigeo::jobs

@@ -51,15 +51,12 @@ std::filesystem::path results_of(const std::filesystem::path& list, int number);
 /// Where Slurm and the task itself print: task-<number>.log beside the list.
 std::filesystem::path log_of_task(const std::filesystem::path& list, int number);
 
-/// By the name of the job's dataset. What was neither done nor has failed may still be done.
+/// By job_id. What was neither done nor has failed may still be done.
 using TaskResults = std::map<std::string, JobOutcome>;
 
-/// A line for each job: its name and JobReply, the seconds, threads and attempts it took.
+/// A line for each job: its job_id and JobReply, the seconds, threads and attempts it took.
 std::string results_text(const TaskResults& results);
 /// Lines that are damaged are passed over; of no file there is none.
 TaskResults read_results(const std::filesystem::path& file);
-
-/// Whether the dataset is there, made under the job's key, and its sidecar beside it.
-bool is_complete(const SurfaceJob& job);
 
 }  // namespace semigeo::jobs

@@ -15,6 +15,7 @@
 
 #include "io/dataset.hpp"
 #include "io/error.hpp"
+#include "io/hash_library.hpp"
 
 namespace semigeo::jobs {
 namespace {
@@ -31,28 +32,31 @@ rlim_t most_seconds(const fs::path& dataset) {
   return kLeast + (error ? 0 : bytes / kBytesPerSecond);
 }
 
-/// A process that verifies one dataset, and the end of the pipe that tells what it found.
+/// A process that verifies one file, and the end of the pipe that tells what it found.
 struct Child {
   pid_t process = -1;
   int findings = -1;
 };
 
-std::string problem_of(const fs::path& dataset) {
+/// Reads everything in a file; throws on what is wrong with it.
+using Verify = void (*)(const fs::path&);
+
+std::string problem_of(const fs::path& file, Verify verify) {
   try {
-    io::Dataset(dataset).verify();
+    verify(file);
     return "";
   } catch (const std::exception& e) {
     return e.what();
   }
 }
 
-[[noreturn]] void verify_and_exit(const fs::path& dataset, int findings) {
+[[noreturn]] void verify_and_exit(const fs::path& file, Verify verify, int findings) {
   // What the C library says of a crash is no sentence.
   const int nowhere = open("/dev/null", O_WRONLY);
   if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);
-  const rlimit limit = {most_seconds(dataset), RLIM_INFINITY};
+  const rlimit limit = {most_seconds(file), RLIM_INFINITY};
   setrlimit(RLIMIT_CPU, &limit);
-  const std::string problem = problem_of(dataset);
+  const std::string problem = problem_of(file, verify);
   for (std::size_t at = 0; at < problem.size();) {
     const ssize_t written = write(findings, problem.data() + at, problem.size() - at);
     if (written < 0 && errno != EINTR) _exit(2);
@@ -65,11 +69,11 @@ std::string problem_of(const fs::path& dataset) {
   throw std::system_error(errno, std::generic_category(), action);
 }
 
-Child start(const fs::path& dataset) {
+Child start(const fs::path& file, Verify verify) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) fail("cannot make a pipe");
   const pid_t process = fork();
-  if (process == 0) verify_and_exit(dataset, ends[1]);
+  if (process == 0) verify_and_exit(file, verify, ends[1]);
   close(ends[1]);
   if (process < 0) {
     close(ends[0]);
@@ -100,19 +104,30 @@ std::string result_of(const Child& child, const fs::path& dataset) {
       .what();
 }
 
+std::vector<std::string> verify_all(const std::vector<fs::path>& files, Verify verify,
+                                    std::size_t at_once) {
+  std::vector<Child> children;
+  std::vector<std::string> problems;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    while (children.size() < std::min(i + at_once, files.size()))
+      children.push_back(start(files[children.size()], verify));
+    problems.push_back(result_of(children[i], files[i]));
+  }
+  return problems;
+}
+
 }  // namespace
 
 std::vector<std::string> verify_datasets(const std::vector<fs::path>& datasets, int at_once) {
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
-  const std::size_t most = std::max(at_once > 0 ? at_once : cores, 1);
-  std::vector<Child> children;
-  std::vector<std::string> problems;
-  for (std::size_t i = 0; i < datasets.size(); ++i) {
-    while (children.size() < std::min(i + most, datasets.size()))
-      children.push_back(start(datasets[children.size()]));
-    problems.push_back(result_of(children[i], datasets[i]));
-  }
-  return problems;
+  const auto most = static_cast<std::size_t>(std::max(at_once > 0 ? at_once : cores, 1));
+  return verify_all(
+      datasets, [](const fs::path& file) { io::Dataset(file).verify(); }, most);
+}
+
+std::vector<std::string> verify_libraries(const std::vector<fs::path>& libraries) {
+  return verify_all(
+      libraries, [](const fs::path& file) { io::HashLibrary(file).verify(); }, 1);
 }
 
 }  // namespace semigeo::jobs

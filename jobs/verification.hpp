@@ -12,5 +12,7 @@ namespace semigeo::jobs {
 /// meanwhile would leave that lock closed for the children: there must be none.
 std::vector<std::string> verify_datasets(const std::vector<std::filesystem::path>& datasets,
                                          int at_once);
+/// The same of libraries (io::HashLibrary::verify), one after the other.
+std::vector<std::string> verify_libraries(const std::vector<std::filesystem::path>& libraries);
 
 }  // namespace semigeo::jobs

@@ -22,6 +22,7 @@
 #include "io/error.hpp"
 #include "io/xdmf.hpp"
 #include "jobs/job_line.hpp"
+#include "jobs/job_stage.hpp"
 #include "jobs/process_usage.hpp"
 
 namespace semigeo::jobs {
@@ -136,7 +137,8 @@ void limit_address_space(std::uint64_t bytes) {
 }
 
 /// What SEMIGEO_TEST_FAULTS has for this job.
-std::string fault_of(const std::string& name) {
+std::string fault_of(const Job& job) {
+  const std::string name = job.kind == JobKind::kSurface ? job.name : job_id(job);
   const char* faults = std::getenv("SEMIGEO_TEST_FAULTS");
   std::string_view rest = faults == nullptr ? "" : faults;
   while (!rest.empty()) {
@@ -150,7 +152,7 @@ std::string fault_of(const std::string& name) {
 }
 
 void simulate_fault(const JobRequest& request) {
-  const std::string fault = fault_of(request.job.name);
+  const std::string fault = fault_of(request.job);
   if (fault.empty()) return;
   const fs::path mark = request.log.string() + ".once";
   if (fault == "crash" || (fault == "crash-once" && !fs::exists(mark))) {
@@ -168,7 +170,7 @@ void simulate_fault(const JobRequest& request) {
 }
 
 /// Whether the sidecar could be made; if not, the dataset must be, too.
-bool remake_sidecar(const SurfaceJob& job) {
+bool remake_sidecar(const Job& job) {
   std::string text;
   try {
     text = io::sidecar_text(job.output);
@@ -204,20 +206,20 @@ JobReply do_job(const JobRequest& request, Reporter& reporter) {
     simulate_fault(request);
     if (!request.sidecar_only || !remake_sidecar(request.job)) {
       engine::Workers workers(request.threads);
-      reply.result = run_surface_job(request.job, request.parameters, {workers, reporter, {}});
+      reply.result = run_stage(request.job, request.parameters, {workers, reporter, {}});
     }
     reply.kind = JobReply::Kind::kDone;
   } catch (const std::bad_alloc&) {
     limit_address_space(0);
-    reply.error = request.job.input.string() + ": needs more than the " +
+    reply.error = subject_of(request.job).string() + ": needs more than the " +
                   std::to_string(request.memory_bytes >> 20) +
-                  " MiB of memory that a job may have; give --memory-per-job more, or decimate "
-                  "the scan";
+                  " MiB of memory that a job may have; give --memory-per-job more" +
+                  (request.job.kind == JobKind::kSurface ? ", or decimate the scan" : "");
   } catch (const io::Error& e) {
     reply.error = e.what();
   } catch (const std::exception& e) {  // a thread that finds no room for its stack, for one
     limit_address_space(0);
-    reply.error = request.job.input.string() + ": " + e.what() +
+    reply.error = subject_of(request.job).string() + ": " + e.what() +
                   "; run again, or give --memory-per-job more if its " +
                   std::to_string(request.memory_bytes >> 20) + " MiB of memory were too little";
   }

@@ -8,8 +8,9 @@ namespace semigeo::jobs {
 /// written to it. Whatever a job throws is its failure; whatever kills the process is for the
 /// reader of the answers to find out. Returns an exit code: 2 on a line that is no request, else 0.
 ///
-/// SEMIGEO_TEST_FAULTS="NAME=FAULT,..." makes the jobs of these names crash, loop or take memory
-/// without end, or fail once: for tests of those who run workers.
+/// SEMIGEO_TEST_FAULTS="NAME=FAULT,..." makes the jobs of these names (of surface jobs the
+/// dataset's, of others "KIND NAME") crash, loop or take memory without end, or fail once: for
+/// tests of those who run workers.
 int serve_jobs(int requests, int answers);
 
 }  // namespace semigeo::jobs

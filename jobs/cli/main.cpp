@@ -51,6 +51,7 @@ int run(int argc, char** argv) {
   int exit_code = kAllDone;
   add_run(app, exit_code);
   add_status(app, exit_code);
+  add_library(app, exit_code);
   add_info(app, exit_code);
   add_check(app, exit_code);
   add_export(app, exit_code);

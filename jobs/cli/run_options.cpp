@@ -40,7 +40,7 @@ void set_tolerance(const std::string& text, SurfaceParameters& parameters) {
 
 /// What is done to a scan before it is smoothed.
 void add_preparation_options(CLI::App* command, RunOptions& options) {
-  SurfaceParameters& surface = options.config.surface;
+  SurfaceParameters& surface = options.config.jobs.surface;
   command
       ->add_option("--fill-holes", surface.preparation.fill_holes,
                    "Fill holes of at most so many edges; outer boundaries stay. 0: none")
@@ -57,7 +57,7 @@ void add_preparation_options(CLI::App* command, RunOptions& options) {
 
 /// Levels, patches and steps.
 void add_evolution_options(CLI::App* command, RunOptions& options) {
-  SurfaceParameters& surface = options.config.surface;
+  SurfaceParameters& surface = options.config.jobs.surface;
   command->add_option("--levels", surface.levels, "Smoothing iterations; every level is stored")
       ->check(CLI::Range(0, 999));
   command
@@ -94,7 +94,7 @@ void add_evolution_options(CLI::App* command, RunOptions& options) {
 
 /// Maxima, and the level that counts.
 void add_feature_options(CLI::App* command, RunOptions& options) {
-  FeatureOptions& features = options.config.surface.features;
+  FeatureOptions& features = options.config.jobs.surface.features;
   command
       ->add_option(
           "--feature-radius", features.radius,
@@ -117,7 +117,7 @@ void add_feature_options(CLI::App* command, RunOptions& options) {
 
 /// How datasets are stored and labelled.
 void add_storage_options(CLI::App* command, RunOptions& options) {
-  SurfaceParameters& surface = options.config.surface;
+  SurfaceParameters& surface = options.config.jobs.surface;
   command->add_option("--compression", options.compression, "Of the stored arrays")
       ->check(CLI::IsMember({"deflate", "none"}));
   command->add_option("--unit", surface.length_unit, "Length unit of the scans, as a label")
@@ -231,6 +231,14 @@ void add_run_options(CLI::App* command, RunOptions& options) {
   add_evolution_options(command, options);
   add_feature_options(command, options);
   add_storage_options(command, options);
+  command->add_flag(
+      "--library", options.library,
+      "Also build ARCHIVE/library.h5, in which scenes are recognised, of all datasets\n"
+      "of the archive");
+  add_job_options(command, options);
+}
+
+void add_job_options(CLI::App* command, RunOptions& options) {
   add_executor_options(command, options);
   add_slurm_options(command, options);
   command->add_flag("--json", options.json, "Results as JSON on stdout")->configurable(false);
@@ -260,7 +268,7 @@ void apply_words(RunOptions& options) {
     double& most = options.executor.most_seconds;
     most = most > 0 ? std::min(most, left) : left;
   }
-  SurfaceParameters& parameters = options.config.surface;
+  SurfaceParameters& parameters = options.config.jobs.surface;
   set_tolerance(options.decimate, parameters);
   parameters.evolution.curved = options.surface == "curved";
   parameters.evolution.rescale = options.rescale == "size"    ? Rescale::size
@@ -282,12 +290,12 @@ void apply_words(RunOptions& options) {
                                               std::to_string(parameters.levels) +
                                               "; give one of them, or more --levels");
   if (options.level >= 0) parameters.recognition_level = options.level;
-  options.config.surface.compression =
+  options.config.jobs.surface.compression =
       options.compression == "deflate" ? io::Compression::deflate : io::Compression::none;
 }
 
 std::string config_text(const RunOptions& options) {
-  const SurfaceParameters& p = options.config.surface;
+  const SurfaceParameters& p = options.config.jobs.surface;
   std::string text = "# Effective configuration; use it again with --config.\n[run]\n";
   // JSON's numbers, booleans and strings are TOML's.
   const auto add = [&text](const char* name, const nlohmann::json& value) {

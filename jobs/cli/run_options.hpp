@@ -26,6 +26,7 @@ struct RunOptions {
   SlurmOptions slurm;
   bool keep_going = false;  ///< said aloud
   std::string until;        ///< "06:00", local time; empty: no end
+  bool library = false;     ///< of all datasets of the archive
   bool dry_run = false;
   bool explain = false;
   std::string dag;  ///< empty, "dot" or "json"
@@ -34,6 +35,9 @@ struct RunOptions {
 
 /// Binds the options of `run` to `options`, which must live until the command line is parsed.
 void add_run_options(CLI::App* command, RunOptions& options);
+
+/// Those of them that are about jobs of any kind: limits, executors, what is told.
+void add_job_options(CLI::App* command, RunOptions& options);
 
 /// Turns the words that were given into parameters. Throws CLI::ValidationError on those that do
 /// not go together.

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "jobs/cli/json_output.hpp"
+#include "jobs/library_plan.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {
@@ -26,26 +27,14 @@ nlohmann::json reason_json(const Reason& reason) {
   return document;
 }
 
-nlohmann::json scan_json(const PlannedJob& planned) {
+/// Of a surface job what was done to a scan; of another its kind.
+nlohmann::json job_json(const PlannedJob& planned) {
   nlohmann::json scan = {{"name", planned.job.name},
                          {"input", planned.job.input.string()},
                          {"output", planned.job.output.string()}};
   for (const Reason& reason : planned.reasons) scan["reasons"].push_back(reason_json(reason));
+  if (planned.job.kind != JobKind::kSurface) scan["kind"] = name_of(planned.job.kind);
   return scan;
-}
-
-const char* state_name(JobState state) {
-  switch (state) {
-    case JobState::kDone:
-      return "done";
-    case JobState::kUpToDate:
-      return "up to date";
-    case JobState::kNotRun:
-      return "not run";
-    case JobState::kFailed:
-      break;
-  }
-  return "failed";
 }
 
 std::string in_words(const PreparationResult& preparation) {
@@ -86,79 +75,134 @@ std::string in_words(const SurfaceJobResult& result) {
   return text;
 }
 
-}  // namespace
+const SurfaceJobResult* surface_result(const JobOutcome& outcome) {
+  return std::get_if<SurfaceJobResult>(&outcome.result);
+}
 
-void print_plan(const std::vector<PlannedJob>& plan, bool json, bool explain) {
-  if (json) {
-    auto scans = nlohmann::json::array();
-    for (const PlannedJob& p : plan) {
-      auto scan = scan_json(p);
-      scan["state"] = state_of(p);
-      if (!p.reasons.empty()) scan["reason"] = in_short(p.reasons);
-      if (!p.error.empty()) scan["error"] = p.error;
-      scans.push_back(std::move(scan));
-    }
-    print_document({{"scans", scans}});
-    return;
+/// The lists of a document: `jobs` is there only if there are jobs of other kinds.
+void add_to(nlohmann::json& document, const PlannedJob& planned, nlohmann::json&& entry) {
+  document[planned.job.kind == JobKind::kSurface ? "scans" : "jobs"].push_back(std::move(entry));
+}
+
+void add_result(nlohmann::json& entry, const SurfaceJobResult& result,
+                const SurfaceParameters& parameters) {
+  entry["format"] = result.format;
+  entry["vertices"] = result.vertices;
+  entry["triangles"] = result.triangles;
+  entry["parts"] = result.parts;
+  entry["levels"] = result.levels;
+  entry["repairs"] = nlohmann::json::parse(to_json(result.repairs));
+  entry["preparation"] = nlohmann::json::parse(to_json(result.preparation, parameters.preparation));
+  entry["vanished"] = result.vanished;
+  entry["remeshing"] = nlohmann::json::parse(to_json(result.remeshed));
+}
+
+bool is_made(JobState state) {
+  return state == JobState::kDone || state == JobState::kUpToDate;
+}
+
+nlohmann::json library_json(const Job& library, JobState state) {
+  const auto missing = missing_models(library);
+  return {{"output", library.output.string()},
+          {"state", name_of(state)},
+          {"models", library.models.size() - missing.size()},
+          {"missing", missing}};
+}
+
+void print_library(const Job& library, JobState state) {
+  const auto missing = missing_models(library);
+  if (is_made(state)) {
+    std::printf("library: %s: %zu models%s", library.output.c_str(),
+                library.models.size() - missing.size(),
+                state == JobState::kUpToDate ? ", up to date" : "");
+  } else {
+    std::printf("library: %s: %s", library.output.c_str(), std::string(name_of(state)).c_str());
   }
-  for (const PlannedJob& p : plan) {
-    if (p.up_to_date) continue;
-    std::printf("%s: %s\n", p.job.name.c_str(),
-                p.error.empty() ? ("would run: " + in_short(p.reasons)).c_str() : p.error.c_str());
-    if (!explain) continue;
-    for (const Reason& reason : p.reasons) std::printf("    %s\n", in_words(reason).c_str());
-  }
+  for (std::size_t i = 0; is_made(state) && i < missing.size(); ++i)
+    std::printf("%s%s", i == 0 ? "; missing: " : ", ", missing[i].c_str());
+  std::printf("\n");
+}
+
+const char* what_of(const PlannedJob& planned) {
+  return planned.job.kind == JobKind::kSurface ? "scans" : "jobs of a library";
+}
+
+/// "5 scans: 3 would run, 2 up to date".
+void print_counts(const std::vector<const PlannedJob*>& plan) {
   const auto up_to_date = std::ranges::count_if(plan, &PlannedJob::up_to_date);
-  const auto unreadable = std::ranges::count_if(plan, std::not_fn(is_readable));
+  const auto unreadable =
+      std::ranges::count_if(plan, [](const PlannedJob* planned) { return !is_readable(*planned); });
   const auto all = static_cast<long long>(plan.size());
-  std::printf("%lld scans: %lld would run, %lld up to date", all, all - up_to_date - unreadable,
-              static_cast<long long>(up_to_date));
+  std::printf("%lld %s: %lld would run, %lld up to date", all, what_of(*plan.front()),
+              all - up_to_date - unreadable, static_cast<long long>(up_to_date));
   if (unreadable > 0) std::printf(", %lld cannot be read", static_cast<long long>(unreadable));
   std::printf("\n");
 }
 
+}  // namespace
+
+void print_plan(const std::vector<PlannedJob>& plan, bool json, bool explain) {
+  if (json) {
+    nlohmann::json document = {{"scans", nlohmann::json::array()}};
+    for (const PlannedJob& p : plan) {
+      auto entry = job_json(p);
+      entry["state"] = state_of(p);
+      if (!p.reasons.empty()) entry["reason"] = in_short(p.reasons);
+      if (!p.error.empty()) entry["error"] = p.error;
+      add_to(document, p, std::move(entry));
+    }
+    print_document(document);
+    return;
+  }
+  std::vector<const PlannedJob*> scans;
+  std::vector<const PlannedJob*> others;
+  for (const PlannedJob& p : plan) {
+    const bool of_scan = p.job.kind == JobKind::kSurface;
+    (of_scan ? scans : others).push_back(&p);
+    if (p.up_to_date) continue;
+    std::printf("%s: %s\n", (of_scan ? p.job.name : job_id(p.job)).c_str(),
+                p.error.empty() ? ("would run: " + in_short(p.reasons)).c_str() : p.error.c_str());
+    if (!explain) continue;
+    for (const Reason& reason : p.reasons) std::printf("    %s\n", in_words(reason).c_str());
+  }
+  if (!scans.empty()) print_counts(scans);
+  if (!others.empty()) print_counts(others);
+}
+
 void print_json(const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,
                 const SurfaceParameters& parameters, const RunSummary& summary) {
-  auto scans = nlohmann::json::array();
+  nlohmann::json document = {{"scans", nlohmann::json::array()},
+                             {"done", summary.done},
+                             {"up_to_date", summary.up_to_date},
+                             {"failed", summary.failed},
+                             {"skipped", summary.skipped},
+                             {"not_run", summary.not_run},
+                             {"vertex_levels", summary.vertex_levels},
+                             {"vertex_levels_per_second", summary.rate()},
+                             {"wall_seconds", summary.wall_seconds},
+                             {"cpu_seconds", summary.cpu_seconds},
+                             {"peak_memory_bytes", summary.peak_bytes}};
   for (std::size_t i = 0; i < plan.size(); ++i) {
-    auto scan = scan_json(plan[i]);
+    auto entry = job_json(plan[i]);
     const JobOutcome& outcome = outcomes[i];
-    scan["state"] = state_name(outcome.state);
-    scan["seconds"] = outcome.seconds;
-    if (!outcome.error.empty()) scan["error"] = outcome.error;
-    if (outcome.result) {
-      scan["format"] = outcome.result->format;
-      scan["vertices"] = outcome.result->vertices;
-      scan["triangles"] = outcome.result->triangles;
-      scan["parts"] = outcome.result->parts;
-      scan["levels"] = outcome.result->levels;
-      scan["repairs"] = nlohmann::json::parse(to_json(outcome.result->repairs));
-      scan["preparation"] =
-          nlohmann::json::parse(to_json(outcome.result->preparation, parameters.preparation));
-      scan["vanished"] = outcome.result->vanished;
-      scan["remeshing"] = nlohmann::json::parse(to_json(outcome.result->remeshed));
-    }
-    scans.push_back(std::move(scan));
+    entry["state"] = name_of(outcome.state);
+    entry["seconds"] = outcome.seconds;
+    if (!outcome.error.empty()) entry["error"] = outcome.error;
+    if (const auto* result = surface_result(outcome)) add_result(entry, *result, parameters);
+    if (plan[i].job.kind == JobKind::kLibrary)
+      document["library"] = library_json(plan[i].job, outcome.state);
+    add_to(document, plan[i], std::move(entry));
   }
-  const nlohmann::json document = {{"scans", scans},
-                                   {"done", summary.done},
-                                   {"up_to_date", summary.up_to_date},
-                                   {"failed", summary.failed},
-                                   {"not_run", summary.not_run},
-                                   {"vertex_levels", summary.vertex_levels},
-                                   {"vertex_levels_per_second", summary.rate()},
-                                   {"wall_seconds", summary.wall_seconds},
-                                   {"cpu_seconds", summary.cpu_seconds},
-                                   {"peak_memory_bytes", summary.peak_bytes}};
   print_document(document);
 }
 
 void print_text(const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,
                 const RunSummary& summary) {
   for (std::size_t i = 0; i < plan.size(); ++i) {
-    if (!outcomes[i].result || outcomes[i].result->repairs == kernels::SurfaceRepairs{}) continue;
+    const auto* result = surface_result(outcomes[i]);
+    if (result == nullptr || result->repairs == kernels::SurfaceRepairs{}) continue;
     std::string changes;
-    const auto repairs = nlohmann::json::parse(to_json(outcomes[i].result->repairs));
+    const auto repairs = nlohmann::json::parse(to_json(result->repairs));
     for (const auto& [name, count] : repairs.items()) {
       if (count.get<std::int64_t>() == 0) continue;
       std::string words = name;
@@ -168,22 +212,26 @@ void print_text(const std::vector<PlannedJob>& plan, const std::vector<JobOutcom
     std::printf("repaired: %s: %s\n", plan[i].job.name.c_str(), changes.c_str());
   }
   for (std::size_t i = 0; i < plan.size(); ++i) {
-    const auto& result = outcomes[i].result;
-    if (!result || result->preparation == PreparationResult{}) continue;
+    const auto* result = surface_result(outcomes[i]);
+    if (result == nullptr || result->preparation == PreparationResult{}) continue;
     std::printf("prepared: %s: %s\n", plan[i].job.name.c_str(),
                 in_words(result->preparation).c_str());
   }
   for (std::size_t i = 0; i < plan.size(); ++i) {
-    if (!outcomes[i].result) continue;
-    const std::string words = in_words(*outcomes[i].result);
+    const auto* result = surface_result(outcomes[i]);
+    if (result == nullptr) continue;
+    const std::string words = in_words(*result);
     if (!words.empty()) std::printf("evolved: %s: %s\n", plan[i].job.name.c_str(), words.c_str());
   }
   for (const JobOutcome& outcome : outcomes)
     if (outcome.state == JobState::kFailed) std::printf("failed: %s\n", outcome.error.c_str());
+  for (std::size_t i = 0; i < plan.size(); ++i)
+    if (plan[i].job.kind == JobKind::kLibrary) print_library(plan[i].job, outcomes[i].state);
   const std::string rate =
       summary.vertex_levels > 0 ? short_number(summary.rate()) + " vertex levels/s; " : "";
   const std::string not_run =
-      summary.not_run > 0 ? ", " + std::to_string(summary.not_run) + " not run" : "";
+      (summary.skipped > 0 ? ", " + std::to_string(summary.skipped) + " skipped" : "") +
+      (summary.not_run > 0 ? ", " + std::to_string(summary.not_run) + " not run" : "");
   std::printf("%lld done, %lld up to date, %lld failed%s; %s%s wall, %s CPU, %.0f MB peak\n",
               static_cast<long long>(summary.done), static_cast<long long>(summary.up_to_date),
               static_cast<long long>(summary.failed), not_run.c_str(), rate.c_str(),

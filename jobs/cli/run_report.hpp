@@ -14,6 +14,7 @@ struct RunSummary {
   std::int64_t done = 0;
   std::int64_t up_to_date = 0;
   std::int64_t failed = 0;
+  std::int64_t skipped = 0;  ///< jobs whose inputs are missing, as others have failed
   std::int64_t not_run = 0;
   std::int64_t vertex_levels = 0;
   double wall_seconds = 0;
@@ -38,7 +39,7 @@ void print_json(const std::vector<PlannedJob>& plan, const std::vector<JobOutcom
                 const SurfaceParameters& parameters, const RunSummary& summary);
 
 /// The same in words: one line a scan whose file had to be repaired, one that was prepared, one
-/// that fell into parts; then the failures; then the totals.
+/// that fell into parts; then the failures, what became of a library, and the totals.
 void print_text(const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,
                 const RunSummary& summary);
 

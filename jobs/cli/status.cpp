@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -33,8 +34,10 @@ nlohmann::json to_json(const ArchiveStatus& status) {
   document["started"] = status.started;
   document["version"] = status.last_run->version;
   document["jobs"] = status.last_run->jobs;
-  document["up_to_date"] = status.last_run->up_to_date;
+  document["up_to_date"] = status.up_to_date;
   document["done"] = status.done;
+  document["done_by_kind"] = status.done_by_kind;
+  document["skipped"] = status.skipped;
   document["left"] = status.left();
   document["running"] = status.running;
   document["failed"] = status.failed;
@@ -55,14 +58,20 @@ void print(const ArchiveStatus& status) {
   std::printf("\n");
   if (status.last_run) {
     std::printf("%lld done, %lld up to date, %lld failed, %lld running, %lld left",
-                count(status.done), count(status.last_run->up_to_date), count(status.failed.size()),
+                count(status.done), count(status.up_to_date), count(status.failed.size()),
                 count(status.is_running() ? status.running.size() : 0), count(status.left()));
+    if (status.skipped > 0) std::printf(", %lld skipped", count(status.skipped));
     if (status.vertex_levels > 0)
       std::printf("; %s vertex levels/s", short_number(status.vertex_levels_per_second()).c_str());
     if (const auto left = status.seconds_left())
       std::printf(", %s left", short_duration(*left).c_str());
     std::printf("\n");
   }
+  // With datasets alone the numbers above say it.
+  if (std::ranges::any_of(status.done_by_kind,
+                          [](const auto& kind) { return kind.first != "surface"; }))
+    for (const auto& [kind, number] : status.done_by_kind)
+      std::printf("done: %lld %s\n", count(number), kind.c_str());
   for (const auto& [job, seconds] : status.running)
     std::printf("%s: %s, since %s\n", status.is_running() ? "running" : "cut off", job.c_str(),
                 short_duration(seconds).c_str());

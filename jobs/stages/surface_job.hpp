@@ -1,16 +1,26 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 #include "engine/run_context.hpp"
 #include "jobs/config.hpp"
-#include "jobs/plan.hpp"
 #include "jobs/stages/prepare_surface.hpp"
 #include "kernels/remeshing.hpp"
 #include "kernels/surface_builder.hpp"
 
 namespace semigeo::jobs {
+
+/// Scan in, dataset out.
+struct SurfaceJob {
+  std::filesystem::path input;
+  std::string input_name;  ///< what the dataset says of it, as UTF-8
+  std::string name;        ///< of the dataset
+  std::filesystem::path output;
+  std::string input_xxh3;  ///< of the scan's bytes
+  std::string key;         ///< hash of everything the dataset depends on
+};
 
 /// What a surface job made.
 struct SurfaceJobResult {

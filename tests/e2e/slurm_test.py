@@ -11,7 +11,7 @@ import unittest
 from pathlib import Path
 
 import slurm_cluster
-from support import PROGRAM, TIMEOUT, SemigeoTest, icosphere, write_ply
+from support import PROGRAM, TIMEOUT, SemigeoTest, bumpy, icosphere, write_ply
 
 
 @unittest.skipIf(slurm_cluster.why_not(), slurm_cluster.why_not())
@@ -94,6 +94,40 @@ class SlurmTest(SemigeoTest):
         self.assertTrue(all(event["seconds"] > 0 and event["vertices"] > 0 for event in ended))
         self.assertEqual(self.run_scans()["up_to_date"], 5)
 
+    def write_bumpy_scans(self, count):
+        for i in range(count):
+            write_ply(self.scans / f"{i}.ply", bumpy(i))
+
+    def test_a_library_of_the_same_bytes_as_here(self):
+        self.write_bumpy_scans(3)
+        document = self.on_slurm("--library", "--levels", "2", "--scans-per-task", "2")
+        self.assertEqual(document["done"], 8)
+        self.assertEqual(document["library"]["models"], 3)
+        local = self.folder / "local"
+        self.run_scans("--library", "--levels", "2", archive=local)
+        self.assert_same_archives(self.archive, local)  # also: no traces of tasks are left
+        self.assertEqual(self.run_scans("--library", "--levels", "2")["up_to_date"], 8)
+
+    def test_a_scan_that_fails_costs_the_library_its_model_only(self):
+        self.write_bumpy_scans(2)
+        (self.scans / "bad.obj").write_text("v 0 0 0\nf 1 2 7\n")
+        document = self.on_slurm("--library", "--levels", "2", "--scans-per-task", "1", code=1)
+        states = {job["name"]: job["state"] for job in document["jobs"]}
+        self.assertEqual(states, {"0.ply": "done", "1.ply": "done", "bad.obj": "skipped", "000.part": "done",
+                                  "library.h5": "done"})
+        self.assertEqual(document["library"]["missing"], ["bad.obj"])
+        local = self.folder / "local"
+        self.run_scans("--library", "--levels", "2", archive=local, code=1)
+        self.assertTrue((self.archive / "library.h5").read_bytes() == (local / "library.h5").read_bytes())
+
+    def test_without_what_a_killed_task_would_have_made_nothing_follows(self):
+        self.write_bumpy_scans(2)
+        process = self.start("--library", "--levels", "2", faults="1.ply=sleep")
+        os.kill(self.wait_for(self.task_process), signal.SIGKILL)
+        document = self.end_of(process, 75)
+        self.assertEqual({job["state"] for job in document["jobs"]}, {"not run"})
+        self.assertEqual(self.on_slurm("--library", "--levels", "2")["library"]["models"], 2)
+
     def test_a_bad_scan_harms_no_other_of_its_task(self):
         self.write_scans("a", "b", "c")
         (self.scans / "bad.obj").write_text("v 0 0 0\nf 1 2 7\n")
@@ -104,7 +138,7 @@ class SlurmTest(SemigeoTest):
         self.assertIn("crashed (signal 11", errors["b.ply"])
         self.assertIn("bad.obj", errors["bad.obj"])
         self.assertIn("about to crash", (self.archive / "logs" / "b.ply.log").read_text())
-        self.assertIn("failed: ", (self.run_folder() / "task-0.log").read_text())
+        self.assertIn("failed: ", (self.run_folder() / "surface" / "task-0.log").read_text())
 
     def task_process(self):
         """The process of the only task that runs, once it runs."""
@@ -124,7 +158,7 @@ class SlurmTest(SemigeoTest):
         os.kill(self.wait_for(self.task_process), signal.SIGKILL)
         document = self.end_of(process, 1)
         self.assertEqual(self.states(document), {"a.ply": "done", "b.ply": "done", "c.ply": "failed"})
-        log = self.run_folder() / "task-0.log"
+        log = self.run_folder() / "surface" / "task-0.log"
         self.assertIn(f"its task ended without a result; see {log}", document["scans"][2]["error"])
         self.assertTrue(log.exists())
         self.assertEqual(self.states(self.on_slurm()), {"a.ply": "up to date", "b.ply": "up to date", "c.ply": "done"})
@@ -183,10 +217,10 @@ class SlurmTest(SemigeoTest):
         self.assertEqual([(stage["name"], stage["tasks"]) for stage in submitted], [("semigeo-surface", 2)])
         self.assertTrue(submitted[0]["job"].isdigit())
         self.wait_for(lambda: not self.queue())
-        results = self.run_folder() / "results" / "0.jsonl"
+        results = self.run_folder() / "surface" / "results" / "0.jsonl"
         told = results.read_text()
         # What a requeued copy would do: it finds the dataset made, and leaves what was told of it.
-        self.semigeo("job", "--list", self.run_folder() / "tasks.jsonl", "--task", 0)
+        self.semigeo("job", "--list", self.run_folder() / "surface" / "tasks.jsonl", "--task", 0)
         self.assertEqual(results.read_text(), told)
         self.assertGreater(json.loads(told)["done"]["vertices"], 0)
         self.assertEqual(self.run_scans()["up_to_date"], 2)

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <type_traits>
+#include <vector>
 
 #include "io/utf8.hpp"
 
@@ -49,8 +50,10 @@ void every_field_of_request(Request& request, const Visit& visit) {
   auto& [job, parameters, sidecar_only, threads, memory_bytes, log] = request;
   visit_each(visit, sidecar_only, threads, memory_bytes, log);
   {
-    auto& [input, input_name, name, output, input_xxh3, key] = job;
-    visit_each(visit, input, input_name, name, output, input_xxh3, key);
+    auto& [kind, name, input, output, key, input_name, input_xxh3, models, shapes, library,
+           partitions, buffer_bytes] = job;
+    visit_each(visit, name, input, output, key, input_name, input_xxh3, models, shapes.first,
+               shapes.end, library, partitions, buffer_bytes);
   }
 }
 
@@ -68,6 +71,8 @@ class Distinct {
       field += static_cast<Field>(count_);
     } else if constexpr (std::is_floating_point_v<Field>) {
       field = 1.0 / (2.0 + count_);
+    } else if constexpr (std::is_same_v<Field, std::vector<std::string>>) {
+      field = {"b%\xff", "text " + std::to_string(count_)};
     } else {
       field = "text " + std::to_string(count_);
     }
@@ -84,7 +89,11 @@ class Listed {
   void operator()(const Field& field) const {
     std::ostringstream text;
     text.precision(17);
-    text << field;
+    if constexpr (std::is_same_v<Field, std::vector<std::string>>) {
+      for (const std::string& one : field) text << one << '\n';
+    } else {
+      text << field;
+    }
     values.push_back(text.str());
   }
   mutable std::vector<std::string> values;
@@ -99,14 +108,19 @@ std::vector<std::string> values_of(const SurfaceJobResult& result) {
 std::vector<std::string> values_of(const JobRequest& request) {
   Listed listed;
   every_field_of_request(request, listed);
-  listed.values.push_back(to_json(request.parameters));
+  listed.values.emplace_back(name_of(request.job.kind));
+  listed.values.push_back(to_json(request.parameters.surface));
+  listed.values.push_back(to_json(request.parameters.recognition));
   return listed.values;
 }
 
 TEST(JobLineTest, EveryFieldOfARequestArrives) {
   JobRequest request;
   every_field_of_request(request, Distinct());
-  request.parameters = unusual_parameters();
+  request.parameters = {
+      .surface = unusual_parameters(),
+      .recognition = {.levels = 7, .most_features = 17, .torsion = true, .samples = 170}};
+  request.job.kind = JobKind::kPartition;
   for (const JobRequest& sent : {request, JobRequest{}}) {
     const std::string line = to_line(sent);
     EXPECT_EQ(line.find('\n'), std::string::npos);
@@ -146,16 +160,33 @@ TEST(JobLineTest, EveryFieldOfAResultArrives) {
     EXPECT_EQ(error, "");
     EXPECT_EQ(cpu_seconds, 1.0 / 3);
     EXPECT_EQ(peak_bytes, 1e12 + 1);
-    ASSERT_TRUE(read.has_value());
-    EXPECT_EQ(values_of(*read), values_of(result));
+    ASSERT_TRUE(std::holds_alternative<SurfaceJobResult>(read));
+    EXPECT_EQ(values_of(std::get<SurfaceJobResult>(read)), values_of(result));
   }
+}
+
+JobResult after_a_line(const JobResult& result) {
+  return job_reply_from(to_line({.kind = JobReply::Kind::kDone, .error = {}, .result = result}))
+      .result;
+}
+
+TEST(JobLineTest, ResultsOfEveryKindArrive) {
+  const auto triplets = after_a_line(TripletsJobResult{.features = 1, .samples = 2, .triplets = 3});
+  const auto [features, samples, count] = std::get<TripletsJobResult>(triplets);
+  EXPECT_EQ(std::vector({features, samples, count}), (std::vector<std::int64_t>{1, 2, 3}));
+  const auto partition = after_a_line(PartitionJobResult{.postings = std::int64_t{1} << 40});
+  EXPECT_EQ(std::get<PartitionJobResult>(partition).postings, std::int64_t{1} << 40);
+  const auto library = after_a_line(LibraryJobResult{.models = 1, .postings = 2, .digest = "d"});
+  const auto [models, postings, digest] = std::get<LibraryJobResult>(library);
+  EXPECT_EQ(std::vector({models, postings}), (std::vector<std::int64_t>{1, 2}));
+  EXPECT_EQ(digest, "d");
 }
 
 TEST(JobLineTest, AJobMayBeDoneWithoutADataset) {
   const JobReply read =
       job_reply_from(to_line({.kind = JobReply::Kind::kDone, .error = {}, .result = {}}));
   EXPECT_EQ(read.kind, JobReply::Kind::kDone);
-  EXPECT_FALSE(read.result.has_value());
+  EXPECT_EQ(read.result.index(), 0u);
 }
 
 TEST(JobLineTest, WorkIsNoOutcome) {
@@ -180,7 +211,7 @@ TEST(JobLineTest, AFailureSaysWhyWhateverTheReason) {
   EXPECT_EQ(read.error, name);
   EXPECT_EQ(read.cpu_seconds, 0.5);
   EXPECT_EQ(read.peak_bytes, 4096);
-  EXPECT_FALSE(read.result.has_value());
+  EXPECT_EQ(read.result.index(), 0u);
   // An error that names a file is what the file system says, and that may be no text.
   const JobReply bytes = job_reply_from(
       to_line({.kind = JobReply::Kind::kFailed, .error = "/a\xff: is no scan", .result = {}}));

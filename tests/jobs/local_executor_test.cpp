@@ -45,7 +45,7 @@ class LocalExecutorTest : public testing::Test {
     fs::create_directories(folder_ / "in");
     config_.inputs = {folder_ / "in"};
     config_.archive = folder_ / "archive";
-    config_.surface.levels = 1;
+    config_.jobs.surface.levels = 1;
     options_.program = SEMIGEO_PROGRAM;
     options_.threads = 2;
   }
@@ -54,7 +54,7 @@ class LocalExecutorTest : public testing::Test {
     options_.logs = config_.archive / "logs";
     listener_.started.clear();
     testing::internal::CaptureStderr();
-    auto outcomes = run_jobs(plan_jobs(config_), config_.surface, options_, progress, &listener_);
+    auto outcomes = run_jobs(plan_jobs(config_), config_.jobs, options_, progress, &listener_);
     said_ = testing::internal::GetCapturedStderr();
     vertex_levels_ = progress.vertex_levels();
     return outcomes;
@@ -96,14 +96,14 @@ TEST_F(LocalExecutorTest, ABadScanFailsAlone) {
   for (const std::size_t i : {0u, 2u, 4u}) {
     EXPECT_EQ(outcomes[i].state, kDone) << i;
     EXPECT_TRUE(outcomes[i].error.empty());
-    ASSERT_TRUE(outcomes[i].result.has_value());
+    ASSERT_TRUE(std::holds_alternative<SurfaceJobResult>(outcomes[i].result));
     EXPECT_GE(outcomes[i].seconds, 0);
   }
-  EXPECT_EQ(outcomes[0].result->vertices, 162);
-  EXPECT_EQ(outcomes[2].result->vertices, 56);
+  EXPECT_EQ(std::get<SurfaceJobResult>(outcomes[0].result).vertices, 162);
+  EXPECT_EQ(std::get<SurfaceJobResult>(outcomes[2].result).vertices, 56);
   for (const std::size_t i : {1u, 3u}) {
     EXPECT_EQ(outcomes[i].state, kFailed) << i;
-    EXPECT_FALSE(outcomes[i].result.has_value());
+    EXPECT_EQ(outcomes[i].result.index(), 0u);
     const std::string file = (folder_ / (i == 1 ? "in/b.obj" : "in/d.obj")).string();
     EXPECT_TRUE(outcomes[i].error.starts_with(file)) << outcomes[i].error;
     EXPECT_NE(said_.find("failed: " + outcomes[i].error + "\n"), std::string::npos) << said_;
@@ -173,7 +173,7 @@ TEST_F(LocalExecutorTest, AnOutputThatCannotBeAFolderIsNamed) {
   options_.logs = folder_ / "logs";
   Progress progress(0, 0);
   try {
-    run_jobs(plan_jobs(config_), config_.surface, options_, progress);
+    run_jobs(plan_jobs(config_), config_.jobs, options_, progress);
     ADD_FAILURE() << "it ran";
   } catch (const io::Error& error) {
     EXPECT_EQ(error.file(), folder_ / "file/scans");
@@ -198,7 +198,7 @@ class FaultTest : public LocalExecutorTest {
       EXPECT_TRUE(outcomes[good].state == kDone || outcomes[good].state == kUpToDate) << good;
     const JobOutcome& bad = outcomes[1];
     EXPECT_EQ(bad.state, kFailed);
-    EXPECT_FALSE(bad.result.has_value());
+    EXPECT_EQ(bad.result.index(), 0u);
     EXPECT_EQ(bad.attempts, 1 + options_.retries);
     EXPECT_TRUE(bad.error.starts_with((folder_ / "in/b.obj").string() + ": ")) << bad.error;
     EXPECT_EQ(bad.error.find('\n'), std::string::npos) << bad.error;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -57,6 +58,35 @@ TEST(PlanGraphTest, LeadsFromScansThroughJobsToDatasets) {
       EXPECT_TRUE(known.contains(dependency)) << dependency;
     EXPECT_TRUE(known.insert(node.id).second) << node.id;
   }
+}
+
+TEST(PlanGraphTest, LeadsFromDatasetsToALibrary) {
+  std::vector<PlannedJob> jobs = plan();
+  jobs.erase(jobs.begin() + 1, jobs.end());
+  const auto add = [&](JobKind kind, const char* name, std::vector<std::size_t> after) {
+    PlannedJob planned;
+    planned.job = {.kind = kind, .name = name, .input = "b.vtkhdf", .output = name, .key = {}};
+    planned.after = std::move(after);
+    planned.reasons = {{.kind = Reason::Kind::kNoOutput}};
+    jobs.push_back(planned);
+  };
+  add(JobKind::kTriplets, "a", {0});
+  add(JobKind::kTriplets, "b", {});
+  add(JobKind::kPartition, "p", {1, 2});
+  add(JobKind::kLibrary, "l", {3});
+  const auto graph = graph_of(jobs);
+  const auto dependencies = [&](const std::string& id) {
+    return std::ranges::find(graph, id, &GraphNode::id)->dependencies;
+  };
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(dependencies("triplets a"), (Names{"dataset archive/scans/a.ply.vtkhdf"}));
+  EXPECT_EQ(dependencies("triplets b"), (Names{"dataset b.vtkhdf"}));
+  EXPECT_EQ(dependencies("partition p"), (Names{"run a", "run b"}));
+  EXPECT_EQ(dependencies("library l"), (Names{"postings p"}));
+  EXPECT_EQ(dependencies("hash library l"), (Names{"library l"}));
+  EXPECT_EQ(graph.back().state, "missing");
+  EXPECT_NE(to_dot(graph).find("\"library l\" [shape=box, style=solid"), std::string::npos);
+  EXPECT_NE(to_dot(graph).find("\"run a\" [shape=note"), std::string::npos);
 }
 
 TEST(PlanGraphTest, JsonHoldsEveryNode) {

@@ -14,7 +14,8 @@
 #include "io/error.hpp"
 #include "io/file_digest.hpp"
 #include "io/xdmf.hpp"
-#include "jobs/stages/surface_job.hpp"
+#include "jobs/job_key.hpp"
+#include "jobs/job_stage.hpp"
 #include "tests/support/scan_file.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -26,19 +27,6 @@ namespace fs = std::filesystem;
 
 using Names = std::vector<std::string>;
 
-TEST(JobKeyTest, ChangesWithEverythingThatTheContentDependsOn) {
-  std::set<std::string> keys = {job_key("a.ply", "1234", {})};
-  const auto is_new = [&](const std::string& key) { return keys.insert(key).second; };
-  EXPECT_TRUE(is_new(job_key("b.ply", "1234", {})));
-  EXPECT_TRUE(is_new(job_key("a.ply", "1235", {})));
-  EXPECT_TRUE(is_new(job_key("a.ply", "1234", {.levels = 9})));
-  EXPECT_TRUE(is_new(job_key("a.ply", "1234", {.evolution = {.curved = false}})));
-  EXPECT_TRUE(is_new(job_key("a.ply", "1234", {.evolution = {.step_factor = 1.0000001}})));
-  EXPECT_TRUE(is_new(job_key("a.ply", "1234", {.compression = io::Compression::none})));
-  EXPECT_TRUE(is_new(job_key("a.ply", "1234", {.length_unit = "mm"})));
-  EXPECT_FALSE(is_new(job_key("a.ply", "1234", {})));
-}
-
 class PlanJobsTest : public testing::Test {
  protected:
   PlanJobsTest() {
@@ -48,14 +36,14 @@ class PlanJobsTest : public testing::Test {
     tests::write_obj(folder_ / "in/b.obj", shapes::cube(1, 2));
     config_.inputs = {folder_ / "in"};
     config_.archive = folder_ / "archive";
-    config_.surface.levels = 1;
+    config_.jobs.surface.levels = 1;
   }
   void run_all() {
     const auto plan = plan_jobs(config_);
     fs::create_directories(folder_ / "archive/scans");
     record_sources(config_.archive, plan);
     for (const PlannedJob& planned : plan)
-      if (!planned.up_to_date) run_surface_job(planned.job, config_.surface, context_);
+      if (!planned.up_to_date) run_stage(planned.job, config_.jobs, context_);
   }
   /// The reasons why jobs run, "" for those that do not.
   Names reasons() {
@@ -81,12 +69,12 @@ constexpr const char* kDamaged = "the dataset is damaged, incomplete or of anoth
 TEST_F(PlanJobsTest, DescribesEachJob) {
   const auto plan = plan_jobs(config_);
   ASSERT_EQ(plan.size(), 2u);
-  const SurfaceJob& job = plan[0].job;
+  const Job& job = plan[0].job;
   EXPECT_EQ(job.input, folder_ / "in/a.obj");
   EXPECT_EQ(job.name, "a.obj");
   EXPECT_EQ(job.output, folder_ / "archive/scans/a.obj.vtkhdf");
   EXPECT_EQ(job.input_xxh3, io::xxh3_of_file(folder_ / "in/a.obj"));
-  EXPECT_EQ(job.key, job_key("a.obj", job.input_xxh3, config_.surface));
+  EXPECT_EQ(job.key, surface_key("a.obj", job.input_xxh3, to_json(config_.jobs.surface)));
 }
 
 TEST_F(PlanJobsTest, WhatWasRunIsUpToDate) {
@@ -120,17 +108,17 @@ TEST_F(PlanJobsTest, AChangedScanIsRunAlone) {
 
 TEST_F(PlanJobsTest, AChangedParameterRunsAll) {
   run_all();
-  config_.surface.evolution.step_factor = 1.5;
+  config_.jobs.surface.evolution.step_factor = 1.5;
   EXPECT_EQ(reasons(), (Names{"the parameters changed", "the parameters changed"}));
-  config_.surface.evolution.step_factor = 1;
+  config_.jobs.surface.evolution.step_factor = 1;
   EXPECT_EQ(reasons(), kBothUpToDate);
 }
 
 TEST_F(PlanJobsTest, NamesWhatDiffers) {
   const std::string before = plan_jobs(config_)[1].job.input_xxh3;
   run_all();
-  config_.surface.evolution.step_factor = 1.5;
-  config_.surface.levels = 2;
+  config_.jobs.surface.evolution.step_factor = 1.5;
+  config_.jobs.surface.levels = 2;
   tests::write_obj(folder_ / "in/b.obj", shapes::cube(1, 3));
   const auto plan = plan_jobs(config_);
   const Reason levels{
@@ -145,10 +133,10 @@ TEST_F(PlanJobsTest, NamesWhatDiffers) {
 TEST_F(PlanJobsTest, AProgramThatComputedSomethingElseIsToldFromOtherParameters) {
   for (PlannedJob& planned : plan_jobs(config_)) {
     planned.job.key = "key of another version";
-    run_surface_job(planned.job, config_.surface, context_);
+    run_stage(planned.job, config_.jobs, context_);
   }
   EXPECT_EQ(reasons(), (Names{"the program changed", "the program changed"}));
-  config_.surface.levels = 2;
+  config_.jobs.surface.levels = 2;
   EXPECT_EQ(reasons(), (Names{"the parameters and the program changed",
                               "the parameters and the program changed"}));
 }
@@ -167,9 +155,9 @@ TEST_F(PlanJobsTest, ACacheChangesNothingButTheReading) {
     return found;
   };
   for (int i = 0; i < 2; ++i) EXPECT_EQ(with_cache(), kBothUpToDate);
-  config_.surface.levels = 2;
+  config_.jobs.surface.levels = 2;
   EXPECT_EQ(with_cache(), (Names{"the parameters changed", "the parameters changed"}));
-  config_.surface.levels = 1;
+  config_.jobs.surface.levels = 1;
   const auto time = fs::last_write_time(folder_ / "in/b.obj");
   {
     std::fstream file(folder_ / "in/b.obj", std::ios::in | std::ios::out);

@@ -56,11 +56,11 @@ TEST(ProgressTest, AwayFromATerminalItIsQuiet) {
   testing::internal::CaptureStderr();
   {
     Progress progress(2, 10);
-    progress.scan_started("a.ply");
+    progress.job_started("a.ply");
     progress.worked(1000);
-    progress.scan_ended(true, 5);
+    progress.job_ended(true, 5);
     progress.say("failed: b.ply: is empty");
-    progress.scan_ended(false, 5);
+    progress.job_ended(false, 5);
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "failed: b.ply: is empty\n");
 }

@@ -20,7 +20,7 @@ TEST(RunJournalTest, TellsWhatARunDid) {
   RunConfig config;
   config.inputs = {folder / "in"};
   config.archive = folder / "archive";
-  config.surface.levels = 1;
+  config.jobs.surface.levels = 1;
   fs::create_directories(folder / "in");
   fs::create_directories(config.archive);
   tests::write_obj(folder / "in/a.obj", shapes::icosphere(2));
@@ -32,7 +32,7 @@ TEST(RunJournalTest, TellsWhatARunDid) {
     options.threads = 1;  // one job after the other
     Progress progress(0, 0);
     RunJournal journal(config.archive, {.version = "1", .threads = 2, .jobs = 2});
-    run_jobs(plan_jobs(config), config.surface, options, progress, &journal);
+    run_jobs(plan_jobs(config), config.jobs, options, progress, &journal);
     journal.run_ended({.done = 1, .failed = 1});
     EXPECT_EQ(journal.problem(), "");
   };

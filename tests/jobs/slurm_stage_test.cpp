@@ -31,7 +31,9 @@ class SlurmStageTest : public testing::Test {
     fs::resize_file(planned.job.input, bytes);
     jobs_.push_back(plan_.size() - 1);
   }
-  SlurmStage stage() const { return surface_stage(plan_, jobs_, {}, options_, slurm_, folders_); }
+  SlurmStage stage() const {
+    return stages_of(plan_, jobs_, {}, options_, slurm_, folders_).front();
+  }
   Estimate estimate(std::size_t job) const {
     return options_.estimates.of(
         {.format = "PLY binary", .bytes = fs::file_size(plan_[job].job.input)},
@@ -88,12 +90,48 @@ TEST_F(SlurmStageTest, WhatTheUserSaysHolds) {
   EXPECT_EQ(task.jobs[0].memory_bytes, options_.memory_per_job);
 }
 
+TEST_F(SlurmStageTest, EachKindIsAStageThatWaitsForThoseBeforeIt) {
+  add("a.ply", kMegabyte);
+  add("b.ply", 50 * kMegabyte);
+  const auto more = [&](JobKind kind, const std::string& name, std::vector<std::size_t> after) {
+    PlannedJob planned;
+    planned.job = {.kind = kind,
+                   .name = name,
+                   .input = folder_ / "none",
+                   .output = folder_ / (name + ".out"),
+                   .key = "k",
+                   .models = {"a.ply", "b.ply"}};
+    planned.after = std::move(after);
+    jobs_.push_back(plan_.size());
+    plan_.push_back(planned);
+  };
+  more(JobKind::kTriplets, "a.ply", {0});
+  more(JobKind::kTriplets, "b.ply", {1});
+  more(JobKind::kPartition, "000.part", {2, 3});
+  more(JobKind::kLibrary, "library.h5", {4});
+  plan_[0].up_to_date = true;
+  jobs_.erase(jobs_.begin());
+  const auto stages = stages_of(plan_, jobs_, {}, options_, slurm_, folders_);
+  ASSERT_EQ(stages.size(), 4u);
+  EXPECT_EQ(stages[0].array.name, "semigeo-surface");
+  EXPECT_EQ(stages[1].array.name, "semigeo-triplets");
+  EXPECT_EQ(stages[3].array.name, "semigeo-library");
+  EXPECT_EQ(stages[0].after, std::vector<std::size_t>{});
+  for (std::size_t i = 1; i < 4; ++i) EXPECT_EQ(stages[i].after, std::vector{i - 1});
+  // Before its dataset is there, a triplets job is judged by the scan.
+  EXPECT_GT(stages[1].array.memory_bytes, 500 * kMegabyte);
+  EXPECT_GT(stages[3].array.memory_bytes, 256 * kMegabyte);
+  const Task task = read_task(stages[2].list, 0);
+  EXPECT_EQ(task.jobs[0].job.models, plan_[4].job.models);
+  EXPECT_EQ(task.jobs[0].job.kind, JobKind::kPartition);
+}
+
 TEST_F(SlurmStageTest, TheScriptIsOfQuotedWords) {
   add("a.ply", kMegabyte);
   std::ifstream script(stage().array.script);
   const std::string text{std::istreambuf_iterator<char>(script), {}};
   EXPECT_EQ(text, "#!/bin/sh\nexec '/opt/it'\\''s/semigeo' job --list '" +
-                      (folders_.run / "tasks.jsonl").string() +
+                      (folders_.run / "surface/tasks.jsonl").string() +
                       "' --task \"$SLURM_ARRAY_TASK_ID\"\n");
 }
 

@@ -49,6 +49,23 @@ TEST_F(StatusTest, OfARunThatGoesOn) {
   EXPECT_DOUBLE_EQ(*now.seconds_left(), now.seconds);
 }
 
+TEST_F(StatusTest, CountsJobsOfEveryKind) {
+  Journal journal(folder_.path(), "one");
+  journal.write(RunStarted{.version = "1", .jobs = 6, .up_to_date = 2});
+  journal.write(JobEnded{.job = "surface a", .state = "done"});
+  journal.write(JobEnded{.job = "surface b", .state = "failed", .error = "b: no"});
+  journal.write(JobEnded{.job = "triplets a", .state = "done"});
+  journal.write(JobEnded{.job = "triplets b", .state = "skipped"});
+  journal.write(JobEnded{.job = "library l.h5", .state = "up to date"});
+  const ArchiveStatus then = status();
+  EXPECT_EQ(then.done, 2);
+  EXPECT_EQ(then.done_by_kind,
+            (std::map<std::string, std::int64_t>{{"surface", 1}, {"triplets", 1}}));
+  EXPECT_EQ(then.skipped, 1);
+  EXPECT_EQ(then.up_to_date, 3);
+  EXPECT_EQ(then.left(), 1);
+}
+
 TEST_F(StatusTest, OfARunThatWasKilled) {
   begin_run("one");
   const ArchiveStatus then = status();

@@ -15,6 +15,7 @@
 #include "io/error.hpp"
 #include "io/file_digest.hpp"
 #include "io/xdmf.hpp"
+#include "jobs/job_key.hpp"
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/scan_file.hpp"
 #include "tests/support/shapes.hpp"
@@ -40,7 +41,7 @@ class SurfaceJobTest : public testing::Test {
     job.name = "name of " + input.filename().string();
     job.output = folder_ / "scan.vtkhdf";
     job.input_xxh3 = io::xxh3_of_file(input);
-    job.key = job_key(job.name, job.input_xxh3, parameters);
+    job.key = surface_key(job.name, job.input_xxh3, to_json(parameters));
     return job;
   }
   SurfaceJobResult run(const SurfaceJob& job, const SurfaceParameters& parameters = {},

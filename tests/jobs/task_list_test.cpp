@@ -46,7 +46,7 @@ JobRequest request(const std::string& name) {
   request.job.input = "/in/\xff" + name;
   request.job.output = "/archive/scans/" + name + ".vtkhdf";
   request.job.key = "key of " + name;
-  request.parameters.levels = 3;
+  request.parameters.surface.levels = 3;
   request.threads = 2;
   request.log = "/archive/logs/" + name + ".log";
   return request;
@@ -98,8 +98,9 @@ TEST_F(TaskFileTest, ResultsComeBackAndDamagedLinesAreNone) {
   TaskResults results;
   JobOutcome& done = results["a \"quoted\""];
   done.state = JobState::kDone;
-  done.result.emplace();
-  done.result->vertices = 17;
+  SurfaceJobResult result;
+  result.vertices = 17;
+  done.result = result;
   done.seconds = 2.5;
   done.cpu_seconds = 2;
   done.peak_bytes = 1e9;
@@ -114,8 +115,8 @@ TEST_F(TaskFileTest, ResultsComeBackAndDamagedLinesAreNone) {
   ASSERT_EQ(read.size(), 3u);
   const JobOutcome& a = read.at("a \"quoted\"");
   EXPECT_EQ(a.state, JobState::kDone);
-  ASSERT_TRUE(a.result.has_value());
-  EXPECT_EQ(a.result->vertices, 17);
+  ASSERT_TRUE(std::holds_alternative<SurfaceJobResult>(a.result));
+  EXPECT_EQ(std::get<SurfaceJobResult>(a.result).vertices, 17);
   EXPECT_EQ(a.seconds, 2.5);
   EXPECT_EQ(a.cpu_seconds, 2);
   EXPECT_EQ(a.peak_bytes, 1e9);

@@ -12,6 +12,7 @@
 #include "engine/descriptor.hpp"
 #include "io/dataset.hpp"
 #include "jobs/job_line.hpp"
+#include "jobs/plan.hpp"
 #include "tests/support/scan_file.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -37,10 +38,10 @@ class WorkerTest : public testing::Test {
     RunConfig config;
     config.inputs = {tests::write_obj(folder_ / name, shapes::icosphere(subdivisions))};
     config.archive = folder_ / "archive";
-    config.surface.levels = 1;
+    config.jobs.surface.levels = 1;
     fs::create_directories(folder_ / "archive/scans");
     return {.job = plan_jobs(config).front().job,
-            .parameters = config.surface,
+            .parameters = config.jobs,
             .log = folder_ / "logs" / (std::string(name) + ".log")};
   }
 
@@ -90,9 +91,9 @@ TEST_F(WorkerTest, DoesOneJobAfterTheOther) {
     ASSERT_TRUE(answer.has_value());
     EXPECT_EQ(answer->kind, JobReply::Kind::kDone);
     EXPECT_EQ(answer->error, "");
-    ASSERT_TRUE(answer->result.has_value());
-    EXPECT_EQ(answer->result->vertices, scan.vertices);
-    EXPECT_EQ(answer->result->format, "OBJ");
+    ASSERT_NE(answer->result.index(), 0u);
+    EXPECT_EQ(std::get<SurfaceJobResult>(answer->result).vertices, scan.vertices);
+    EXPECT_EQ(std::get<SurfaceJobResult>(answer->result).format, "OBJ");
     EXPECT_EQ(worked_, 2 * scan.vertices);
     EXPECT_GT(answer->cpu_seconds, 0);
     EXPECT_GT(answer->peak_bytes, 1e6);
@@ -234,14 +235,14 @@ TEST_F(WorkerTest, ALostSidecarIsMadeAgainWithoutTheDataset) {
   const auto made = reply_to(worker, wanted);
   ASSERT_TRUE(made.has_value());
   EXPECT_EQ(made->kind, JobReply::Kind::kDone);
-  EXPECT_FALSE(made->result.has_value());
+  EXPECT_EQ(made->result.index(), 0u);
   EXPECT_EQ(contents(sidecar), text);
   // Without a dataset to make it from, that is made, too.
   fs::remove(sidecar);
   fs::remove(wanted.job.output);
   const auto both = reply_to(worker, wanted);
   ASSERT_TRUE(both.has_value());
-  EXPECT_TRUE(both->result.has_value());
+  EXPECT_NE(both->result.index(), 0u);
   EXPECT_EQ(contents(sidecar), text);
   EXPECT_TRUE(fs::exists(wanted.job.output));
 }

@@ -1,0 +1,258 @@
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "io/error.hpp"
+#include "io/hash_library.hpp"
+#include "jobs/cli/command.hpp"
+#include "jobs/cli/datasets.hpp"
+#include "jobs/cli/json_output.hpp"
+#include "jobs/cli/run_plan.hpp"
+#include "jobs/library_plan.hpp"
+#include "jobs/verification.hpp"
+
+namespace semigeo::jobs::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Models = std::map<std::string, LibraryModel>;
+
+struct LibraryOptions {
+  RunOptions run;  ///< config.archive: the library's home
+  std::string library;
+  std::vector<std::string> inputs;  ///< archives and datasets, or names of models
+};
+
+/// Equal for every path to one file.
+fs::path resolved(const fs::path& path) {
+  std::error_code error;
+  fs::path result = fs::weakly_canonical(path, error);
+  return error ? fs::absolute(path) : result;
+}
+
+/// Where a library of this name is made.
+LibraryPlace place_at(const std::string& library) {
+  return place_of(fs::absolute(library).lexically_normal());
+}
+
+bool is_archive(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path / "scans", ignored);
+}
+
+/// The datasets under their names. Error if two have one name: they would be one model.
+Models models_in(const std::vector<std::string>& inputs) {
+  Models models;
+  for (const std::string& input : inputs) {
+    for (const fs::path& dataset : datasets_at(input)) {
+      LibraryModel model = model_of(resolved(dataset));
+      const auto [at, is_new] = models.try_emplace(model.name, model);
+      if (!is_new && at->second.dataset != model.dataset)
+        throw io::Error(
+            dataset, "",
+            "has the name of another dataset that was given, " + at->second.dataset.string(),
+            "rename one of the files: models are told by the names of their datasets");
+    }
+  }
+  return models;
+}
+
+/// What the library holds, each to stay as it is. Error if it is of other parameters, or its parts
+/// are gone.
+Models kept_models(const LibraryPlace& place, const RecognitionParameters& parameters) {
+  const io::HashLibrary library(place.library);
+  constexpr const char* kRemedy = "build it anew: semigeo library build DATASETS --output LIBRARY";
+  if (nlohmann::json::parse(library.parameters_json(), nullptr, false) !=
+      nlohmann::json::parse(to_json(parameters)))
+    throw io::Error(place.library, "", "was made with other parameters", kRemedy);
+  Models models;
+  for (const io::ModelInfo& info : library.models()) {
+    const Job run{.kind = JobKind::kTriplets,
+                  .name = info.name,
+                  .input = {},
+                  .output = run_path(place.parts, info.name),
+                  .key = {}};
+    if (output_key(run).empty())
+      throw io::Error(run.output, "", "is missing or damaged: the triplets of " + info.name,
+                      kRemedy);
+    models[info.name] = {.name = info.name};
+  }
+  return models;
+}
+
+std::vector<LibraryModel> in_order(const Models& models) {
+  std::vector<LibraryModel> list;
+  for (const auto& [name, model] : models) list.push_back(model);
+  return list;
+}
+
+/// Makes the library of the models that `models` names once the library's home is ours.
+int make(LibraryOptions& options, const LibraryPlace& place,
+         const std::function<std::vector<LibraryModel>(DigestCache&)>& models) {
+  options.run.config.archive = place.home;
+  const auto plan_of = [&](DigestCache& cache) {
+    std::vector<PlannedJob> plan;
+    plan_library(plan, models(cache), place, options.run.config.jobs.recognition);
+    if (options.run.verify) verify_library_plan(plan);
+    return plan;
+  };
+  return run_plan(options.run, {.plan = plan_of, .is_archive = place.home != place.parts});
+}
+
+int build(LibraryOptions& options) {
+  const bool of_archive = options.inputs.size() == 1 && is_archive(options.inputs.front());
+  if (!of_archive && options.library.empty())
+    throw CLI::ValidationError("--output", "give the library's file, or one archive alone");
+  const fs::path archive = of_archive ? fs::absolute(options.inputs.front()) : fs::path();
+  const LibraryPlace place =
+      options.library.empty() ? place_of_archive(archive) : place_at(options.library);
+  if (of_archive && resolved(place.home) == resolved(archive))
+    return make(options, place, [&](DigestCache& cache) { return models_of(archive, {}, cache); });
+  const Models models = models_in(options.inputs);
+  return make(options, place, [&](DigestCache&) { return in_order(models); });
+}
+
+int add(LibraryOptions& options) {
+  const LibraryPlace place = place_at(options.library);
+  io::library_key(place.library);  // refuses what is none, before anything is made
+  const Models added = models_in(options.inputs);
+  return make(options, place, [&](DigestCache&) {
+    Models models = kept_models(place, options.run.config.jobs.recognition);
+    for (const auto& [name, model] : added) models[name] = model;
+    return in_order(models);
+  });
+}
+
+int remove(LibraryOptions& options) {
+  const LibraryPlace place = place_at(options.library);
+  io::library_key(place.library);
+  return make(options, place, [&](DigestCache&) {
+    Models models = kept_models(place, options.run.config.jobs.recognition);
+    for (const std::string& name : options.inputs)
+      if (models.erase(name) == 0)
+        throw io::Error(place.library, "", "has no model " + name,
+                        "see `semigeo library list` for their names");
+    if (models.empty())
+      throw io::Error(place.library, "", "would have no model left", "remove the file instead");
+    return in_order(models);
+  });
+}
+
+int list(const LibraryOptions& options) {
+  const io::HashLibrary library(options.library);
+  if (options.run.json) {
+    auto models = nlohmann::json::array();
+    for (const io::ModelInfo& model : library.models())
+      models.push_back({{"name", model.name},
+                        {"digest", model.digest},
+                        {"diagonal", model.diagonal},
+                        {"features", model.features},
+                        {"samples", model.samples},
+                        {"triplets", model.triplets}});
+    print_document({{"models", models},
+                    {"postings", library.posting_count()},
+                    {"parameters", nlohmann::json::parse(library.parameters_json())},
+                    {"digest", library.digest()}});
+    return kAllDone;
+  }
+  for (const io::ModelInfo& model : library.models())
+    std::printf("%s: %lld features, %lld triplets, diagonal %.6g\n", model.name.c_str(),
+                static_cast<long long>(model.features), static_cast<long long>(model.triplets),
+                static_cast<double>(model.diagonal));
+  std::printf("%zu models, %lld triplets\n", library.models().size(),
+              static_cast<long long>(library.posting_count()));
+  return kAllDone;
+}
+
+int check(const LibraryOptions& options) {
+  std::error_code ignored;
+  if (!fs::exists(options.library, ignored))
+    throw io::Error(options.library, "", "no such file", "check the path");
+  const std::string problem = verify_libraries({options.library}).front();
+  if (options.run.json) {
+    nlohmann::json document = {{"file", options.library}, {"ok", problem.empty()}};
+    if (!problem.empty()) document["error"] = problem;
+    print_document(document);
+  } else if (problem.empty()) {
+    std::printf("%s: every byte is as it was written\n", options.library.c_str());
+  } else {
+    std::printf("broken: %s\n", problem.c_str());
+  }
+  return problem.empty() ? kAllDone : kSomeFailed;
+}
+
+using Action = int (*)(LibraryOptions&);
+
+/// A subcommand that makes a library.
+void add_maker(CLI::App* parent, const char* name, const char* about, const char* inputs,
+               const char* what, Action action, int& exit_code) {
+  auto options = std::make_shared<LibraryOptions>();
+  CLI::App* command = parent->add_subcommand(name, about);
+  const bool is_build = std::string(name) == "build";
+  if (!is_build)
+    command->add_option("library", options->library, "The library")
+        ->required()
+        ->configurable(false);
+  command->add_option(inputs, options->inputs, what)
+      ->default_str("")
+      ->required()
+      ->configurable(false);
+  if (is_build)
+    command
+        ->add_option("-o,--output", options->library,
+                     "The library, if it is not ARCHIVE/library.h5; LIBRARY.parts beside it keeps\n"
+                     "the triplets of its models")
+        ->configurable(false);
+  add_job_options(command, options->run);
+  command->fallthrough();
+  command->callback([options, action, &exit_code] {
+    apply_words(options->run);
+    exit_code = action(*options);
+  });
+}
+
+/// A subcommand that reads one.
+void add_reader(CLI::App* parent, const char* name, const char* about,
+                int (*action)(const LibraryOptions&), int& exit_code) {
+  auto options = std::make_shared<LibraryOptions>();
+  CLI::App* command = parent->add_subcommand(name, about);
+  command->add_option("library", options->library, "The library")->required();
+  command->add_flag("--json", options->run.json, "As JSON");
+  command->callback([options, action, &exit_code] { exit_code = action(*options); });
+}
+
+}  // namespace
+
+void add_library(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("library", "Hash libraries, in which scenes are recognised");
+  command->footer(
+      "Examples:\n"
+      "  semigeo library build archive                  archive/library.h5, of all its datasets\n"
+      "  semigeo library build a.vtkhdf b.vtkhdf --output mine.h5\n"
+      "  semigeo library add mine.h5 archive            more models; the others are not made "
+      "again\n"
+      "  semigeo library remove mine.h5 a\n"
+      "  semigeo library list mine.h5                   its models\n"
+      "  semigeo library check mine.h5                  is every byte as it was written?\n"
+      "\n"
+      "What is up to date is left alone. A model has the name of its dataset, without .vtkhdf. "
+      "The\n"
+      "library of an archive has all of it again after the next build or `run --library`.\n");
+  command->require_subcommand(1);
+  command->fallthrough();
+  add_maker(command, "build", "Make a library of datasets", "datasets",
+            "Datasets and archives; one archive alone has its own library", build, exit_code);
+  add_maker(command, "add", "Add models to a library, or replace them", "datasets",
+            "Datasets and archives", add, exit_code);
+  add_maker(command, "remove", "Remove models from a library", "models", "Names of models", remove,
+            exit_code);
+  add_reader(command, "list", "Name the models of a library", list, exit_code);
+  add_reader(command, "check", "Read a library back and say what is broken", check, exit_code);
+}
+
+}  // namespace semigeo::jobs::cli

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "jobs/cli/run_options.hpp"
+#include "jobs/digest_cache.hpp"
+#include "jobs/plan.hpp"
+
+namespace semigeo::jobs::cli {
+
+/// Where a plan comes from. Its folder, RunOptions::config.archive, has the lock, the journal and
+/// the logs.
+struct PlanSource {
+  /// Reads only. If something is to be run, it is called when the folder is ours.
+  std::function<std::vector<PlannedJob>(DigestCache&)> plan;
+  /// Before jobs run, in a folder that is ours and can be written.
+  std::function<void(const std::vector<PlannedJob>&)> prepare = {};
+  bool is_archive = true;  ///< has scans: what was learned of them is kept
+};
+
+/// Makes the plan and runs it, or says what would run; prints results; returns an exit code.
+int run_plan(const RunOptions& options, const PlanSource& source);
+
+}  // namespace semigeo::jobs::cli
