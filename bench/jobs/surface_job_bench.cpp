@@ -9,6 +9,7 @@
 #include "bench/support/scans.hpp"
 #include "io/file_digest.hpp"
 #include "io/mesh_writer.hpp"
+#include "jobs/job_key.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -26,7 +27,7 @@ void run(benchmark::State& state, const fs::path& input, const fs::path& output,
   job.name = input.filename().string();
   job.output = output;
   job.input_xxh3 = io::xxh3_of_file(input);
-  job.key = jobs::job_key(job.name, job.input_xxh3, parameters);
+  job.key = jobs::surface_key(job.name, job.input_xxh3, to_json(parameters));
   jobs::SurfaceJobResult result;
   const PeakMemory memory;
   for (auto _ : state) result = jobs::run_surface_job(job, parameters, {workers, observer, {}});

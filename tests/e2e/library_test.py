@@ -10,7 +10,7 @@ import unittest
 
 import numpy as np
 
-from support import PROGRAM, TIMEOUT, SemigeoTest, bumpy, write_ply
+from support import PROGRAM, TIMEOUT, SemigeoTest, boulder, write_ply
 
 LEVELS = ("--levels", "2")
 
@@ -19,7 +19,7 @@ class LibraryTest(SemigeoTest):
     def setUp(self):
         super().setUp()
         for i in range(4):
-            write_ply(self.scans / f"{i}.ply", bumpy(i))
+            write_ply(self.scans / f"{i}.ply", boulder(3, i))
         self.library = self.archive / "library.h5"
         self.parts = self.archive / "library"
 
@@ -103,12 +103,18 @@ class BuildTest(LibraryTest):
         self.assertEqual((status["state"], status["left"], status["skipped"]), ("ended", 0, 1))
 
     def test_a_job_that_crashes_costs_its_model_only(self):
+        self.run_library()
+        # The library must not have the model of the scan that was.
+        write_ply(self.scans / "1.ply", boulder(3, 17))
         for faults, code in (("triplets 1.ply=crash", 1), ("", 0)):
             process = self.semigeo("run", self.scans, "-o", self.archive, "--library", *LEVELS, "--json", code=code,
                                    env=os.environ | {"SEMIGEO_TEST_FAULTS": faults})
             document = json.loads(process.stdout)
             self.assertEqual(document["library"]["missing"], ["1.ply"] if faults else [])
-        self.assertEqual(self.names(self.library), [f"{i}.ply" for i in range(4)])
+            self.assertEqual(self.names(self.library), [f"{i}.ply" for i in range(4) if i != 1 or not faults])
+        fresh = self.folder / "fresh"
+        self.run_library(archive=fresh)
+        self.assertTrue(self.library.read_bytes() == (fresh / "library.h5").read_bytes())
 
     def test_a_partition_that_fails_costs_the_library(self):
         process = self.semigeo("run", self.scans, "-o", self.archive, "--library", *LEVELS, code=1,

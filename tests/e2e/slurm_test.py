@@ -11,7 +11,7 @@ import unittest
 from pathlib import Path
 
 import slurm_cluster
-from support import PROGRAM, TIMEOUT, SemigeoTest, bumpy, icosphere, write_ply
+from support import PROGRAM, TIMEOUT, SemigeoTest, boulder, icosphere, write_ply
 
 
 @unittest.skipIf(slurm_cluster.why_not(), slurm_cluster.why_not())
@@ -94,12 +94,12 @@ class SlurmTest(SemigeoTest):
         self.assertTrue(all(event["seconds"] > 0 and event["vertices"] > 0 for event in ended))
         self.assertEqual(self.run_scans()["up_to_date"], 5)
 
-    def write_bumpy_scans(self, count):
+    def write_boulders(self, count):
         for i in range(count):
-            write_ply(self.scans / f"{i}.ply", bumpy(i))
+            write_ply(self.scans / f"{i}.ply", boulder(3, i))
 
     def test_a_library_of_the_same_bytes_as_here(self):
-        self.write_bumpy_scans(3)
+        self.write_boulders(3)
         document = self.on_slurm("--library", "--levels", "2", "--scans-per-task", "2")
         self.assertEqual(document["done"], 8)
         self.assertEqual(document["library"]["models"], 3)
@@ -109,7 +109,7 @@ class SlurmTest(SemigeoTest):
         self.assertEqual(self.run_scans("--library", "--levels", "2")["up_to_date"], 8)
 
     def test_a_scan_that_fails_costs_the_library_its_model_only(self):
-        self.write_bumpy_scans(2)
+        self.write_boulders(2)
         (self.scans / "bad.obj").write_text("v 0 0 0\nf 1 2 7\n")
         document = self.on_slurm("--library", "--levels", "2", "--scans-per-task", "1", code=1)
         states = {job["name"]: job["state"] for job in document["jobs"]}
@@ -121,7 +121,7 @@ class SlurmTest(SemigeoTest):
         self.assertTrue((self.archive / "library.h5").read_bytes() == (local / "library.h5").read_bytes())
 
     def test_without_what_a_killed_task_would_have_made_nothing_follows(self):
-        self.write_bumpy_scans(2)
+        self.write_boulders(2)
         process = self.start("--library", "--levels", "2", faults="1.ply=sleep")
         os.kill(self.wait_for(self.task_process), signal.SIGKILL)
         document = self.end_of(process, 75)

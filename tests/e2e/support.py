@@ -97,18 +97,6 @@ def boulder(levels, seed):
     return points * (1 + near @ np.tile([0.15, -0.1], 12))[:, None], triangles
 
 
-def bumpy(seed, subdivisions=3):
-    """A sphere with dents and bumps, other ones for each seed: a surface with features."""
-    points, triangles = icosphere(subdivisions)
-    random = np.random.default_rng(seed)
-    centres = random.normal(size=(25, 3))
-    centres /= np.linalg.norm(centres, axis=1)[:, None]
-    height = np.ones(len(points))
-    for centre, sign in zip(centres, random.choice([-1, 1], 25)):
-        height += 0.2 * sign * np.exp(-((points - centre) ** 2).sum(axis=1) / 0.03)
-    return points * height[:, None], triangles
-
-
 def plane(cells):
     """An open square of cells x cells, slightly bent."""
     i, j = np.divmod(np.arange((cells + 1) ** 2), cells + 1)
