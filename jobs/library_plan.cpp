@@ -20,27 +20,6 @@ using Kind = Reason::Kind;
 
 constexpr const char* kArchiveLibrary = "library.h5";
 
-/// Of what a job's output is made, for reasons.
-const char* inputs_of(JobKind kind) {
-  return kind == JobKind::kTriplets ? "the dataset" : "the models";
-}
-
-/// Compares what is there with what the job would make.
-void decide(PlannedJob& planned) {
-  const Job& job = planned.job;
-  const std::string name(output_name_of(job.kind));
-  std::error_code ignored;
-  if (!fs::exists(job.output, ignored)) {
-    planned.reasons = {{.kind = Kind::kNoOutput, .before = name}};
-  } else if (const std::string key = output_key(job); key.empty()) {
-    planned.reasons = {{.kind = Kind::kUnusableOutput, .before = name}};
-  } else if (key != job.key) {
-    planned.reasons = {{.kind = Kind::kInputs, .before = name, .now = inputs_of(job.kind)}};
-  } else {
-    planned.up_to_date = true;
-  }
-}
-
 PlannedJob triplets_of(const LibraryModel& model, const fs::path& parts,
                        const RecognitionParameters& parameters) {
   PlannedJob planned;
@@ -51,7 +30,7 @@ PlannedJob triplets_of(const LibraryModel& model, const fs::path& parts,
                  .key = triplets_key(model.name, model.dataset_key, parameters)};
   if (model.maker) planned.after = {*model.maker};
   planned.error = model.error;
-  if (planned.error.empty()) decide(planned);
+  if (planned.error.empty()) judge_output(planned);
   return planned;
 }
 
@@ -165,7 +144,7 @@ void plan_library(std::vector<PlannedJob>& plan, const std::vector<LibraryModel>
                  .output = place.library,
                  .key = library_key(keys, parameters),
                  .models = names};
-  decide(library);
+  judge_output(library);
   for (const io::ShapeRange& shapes : partition_shapes(std::ssize(keys))) {
     PlannedJob partition;
     const fs::path output = partition_path(place.parts, library.job.partitions++);
@@ -178,7 +157,7 @@ void plan_library(std::vector<PlannedJob>& plan, const std::vector<LibraryModel>
                      .shapes = shapes,
                      .library = place.library};
     partition.after = after;
-    decide(partition);
+    judge_output(partition);
     // They are removed when the library is made.
     if (library.up_to_date) {
       partition.up_to_date = true;
@@ -203,7 +182,7 @@ void verify_library_plan(std::vector<PlannedJob>& plan) {
       damaged(planned, problem);
       for (const std::size_t partition : planned.after) {
         plan[partition].up_to_date = false;
-        decide(plan[partition]);
+        judge_output(plan[partition]);
       }
     }
   }
