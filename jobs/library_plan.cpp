@@ -20,6 +20,15 @@ using Kind = Reason::Kind;
 
 constexpr const char* kArchiveLibrary = "library.h5";
 
+/// The key of a run without reading all of it, as output_key does.
+std::string header_key(const Job& job) {
+  try {
+    return io::TripletRun(job.output).job_key();
+  } catch (const io::Error&) {
+    return "";
+  }
+}
+
 PlannedJob triplets_of(const LibraryModel& model, const fs::path& parts,
                        const RecognitionParameters& parameters) {
   PlannedJob planned;
@@ -30,15 +39,12 @@ PlannedJob triplets_of(const LibraryModel& model, const fs::path& parts,
                  .key = triplets_key(model.name, model.dataset_key, parameters)};
   if (model.maker) planned.after = {*model.maker};
   planned.error = model.error;
-  if (planned.error.empty()) judge_output(planned);
   return planned;
 }
 
 std::string problem_of_run(const fs::path& path) {
   try {
-    const io::TripletRun run(path);
-    run.read_model();
-    run.read_triplets({});
+    io::triplet_run_key(path);
     return "";
   } catch (const io::Error& error) {
     return error.what();
@@ -145,6 +151,10 @@ void plan_library(std::vector<PlannedJob>& plan, const std::vector<LibraryModel>
                  .key = library_key(keys, parameters),
                  .models = names};
   judge_output(library);
+  // While the library is what it should be, nobody is going to read its runs.
+  for (const std::size_t triplets : after)
+    if (plan[triplets].error.empty())
+      judge_output(plan[triplets], library.up_to_date ? header_key : output_key);
   for (const io::ShapeRange& shapes : partition_shapes(std::ssize(keys))) {
     PlannedJob partition;
     const fs::path output = partition_path(place.parts, library.job.partitions++);

@@ -151,13 +151,13 @@ void verify_plan(std::vector<PlannedJob>& plan, int at_once) {
   }
 }
 
-void judge_output(PlannedJob& planned) {
+void judge_output(PlannedJob& planned, std::string (*key_of)(const Job&)) {
   const Job& job = planned.job;
   const std::string name(output_name_of(job.kind));
   std::error_code ignored;
   if (!fs::exists(job.output, ignored)) {
     planned.reasons = {{.kind = Kind::kNoOutput, .before = name}};
-  } else if (const std::string key = output_key(job); key.empty()) {
+  } else if (const std::string key = key_of(job); key.empty()) {
     planned.reasons = {{.kind = Kind::kUnusableOutput, .before = name}};
   } else if (key != job.key) {
     planned.reasons = {{.kind = Kind::kInputs, .before = name, .now = inputs_of(job.kind)}};
