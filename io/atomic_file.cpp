@@ -99,14 +99,16 @@ AtomicFile::~AtomicFile() {
   if (!committed_) std::filesystem::remove(temporary_path_, ignored);
 }
 
-void AtomicFile::sync() const {
+void AtomicFile::sync() {
   sync_path(temporary_path_, final_path_, 0);
+  synced_ = true;
 }
 
-void AtomicFile::commit() {
-  sync();
+void AtomicFile::commit(Folder folder) {
+  if (!synced_) sync();
   commit_unsynced();
-  sync_path(folder_of(final_path_), folder_of(final_path_), O_DIRECTORY);
+  if (folder == Folder::synced)
+    sync_path(folder_of(final_path_), folder_of(final_path_), O_DIRECTORY);
 }
 
 void AtomicFile::commit_unsynced() {
@@ -115,7 +117,8 @@ void AtomicFile::commit_unsynced() {
   committed_ = true;
 }
 
-void write_file_atomically(const std::filesystem::path& path, std::string_view content) {
+void write_file_atomically(const std::filesystem::path& path, std::string_view content,
+                           Folder folder) {
   AtomicFile file(path);
   {
     FileDescriptor descriptor(file.temporary_path(), O_WRONLY | O_CREAT | O_TRUNC);
@@ -128,7 +131,7 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
     }
     if (descriptor.close() != 0) fail(path, "cannot write it", errno);
   }
-  file.commit();
+  file.commit(folder);
 }
 
 int remove_stale_partials(const std::filesystem::path& folder) {

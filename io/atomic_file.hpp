@@ -9,6 +9,10 @@ namespace semigeo::io {
 /// By what temporary files and locks name this host; "localhost" if it has no name.
 std::string host_name();
 
+/// Whether a folder is forced to the disk, which makes the names in it last. `left`: another file
+/// of the folder gets its name next, and both names last together.
+enum class Folder { synced, left };
+
 /// A file that appears under its final name whole or not at all. It is written under a temporary
 /// name in the same folder, ".<name>.<host>.<pid>.partial", and renamed by `commit`; without a
 /// commit the destructor removes it. Writers in different processes, on one host or several, do
@@ -24,11 +28,13 @@ class AtomicFile {
   const std::filesystem::path& final_path() const { return final_path_; }
   const std::filesystem::path& temporary_path() const { return temporary_path_; }
 
-  /// Forces what was written (and closed) to the disk; Error if that fails.
-  void sync() const;
+  /// Forces what was written (and closed) to the disk; Error if that fails. Nothing may be written
+  /// afterwards.
+  void sync();
 
-  /// Sync, rename to the final name (replacing what stood there), sync of the folder.
-  void commit();
+  /// Sync, if that has not been done, rename to the final name (replacing what stood there), sync
+  /// of the folder.
+  void commit(Folder folder = Folder::synced);
   /// The rename alone: a hundred times as fast, but after a power cut the file may have any bytes
   /// under its final name. For what is checked before it is used, and easily made again.
   void commit_unsynced();
@@ -36,11 +42,13 @@ class AtomicFile {
  private:
   std::filesystem::path final_path_;
   std::filesystem::path temporary_path_;
+  bool synced_ = false;
   bool committed_ = false;
 };
 
 /// Writes a small file whole, by way of AtomicFile.
-void write_file_atomically(const std::filesystem::path& path, std::string_view content);
+void write_file_atomically(const std::filesystem::path& path, std::string_view content,
+                           Folder folder = Folder::synced);
 
 /// Removes the temporary files in `folder` that dead processes of this host left; returns how many.
 /// Those of other hosts and of living processes stay. A folder that does not exist holds none.

@@ -228,6 +228,8 @@ ArrayShape shape_of(const ArrayView& view, Compression compression) {
   ArrayShape shape{view.stored_type, view.rows, view.columns, 1, compression};
   shape.chunk_rows =
       std::max<std::int64_t>(1, std::min(view.rows, kChunkBytes / shape.row_bytes()));
+  shape.compact = view.rows > 0 && view.rows * shape.row_bytes() <= kMostCompactBytes;
+  if (shape.compact) shape.compression = Compression::none;
   return shape;
 }
 
@@ -246,6 +248,10 @@ EncodedChunk encode_rows(const ArrayShape& shape, std::span<const std::byte> row
   if (rows.size() > size) throw std::invalid_argument("more rows than a chunk holds");
   EncodedChunk chunk;
   chunk.raw_xxh3 = xxh3_64(rows);
+  if (shape.compact) {
+    chunk.bytes.assign(rows.begin(), rows.end());
+    return chunk;
+  }
   std::vector<std::byte> padded;
   if (rows.size() < size) {
     padded.assign(rows.begin(), rows.end());
@@ -286,6 +292,11 @@ EncodedArray encode_array(const ArrayView& view, Compression compression) {
 
 bool decode_chunk(const ArrayShape& shape, std::span<const std::byte> bytes,
                   std::uint32_t filter_mask, std::span<std::byte> rows) {
+  if (shape.compact) {
+    if (bytes.size() != rows.size()) return false;
+    std::ranges::copy(bytes, rows.begin());
+    return true;
+  }
   if (bytes.size() < kChecksumBytes) return false;
   const std::span<const std::byte> body = bytes.first(bytes.size() - kChecksumBytes);
   std::uint32_t sum = 0;

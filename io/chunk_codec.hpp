@@ -13,6 +13,9 @@ namespace semigeo::io {
 /// alone.
 enum class Compression { none, deflate };
 
+/// What is not larger is stored without chunks: their index alone would be as large.
+inline constexpr std::int64_t kMostCompactBytes = 4096;
+
 /// One chunk as it lies in the file.
 struct EncodedChunk {
   std::vector<std::byte> bytes;
@@ -27,6 +30,9 @@ struct ArrayShape {
   int columns = 1;
   std::int64_t chunk_rows = 1;
   Compression compression = Compression::none;
+  /// Without chunks and filters, in the header of the dataset, which has a checksum. As far as the
+  /// codec is concerned one chunk of bytes as they are.
+  bool compact = false;
 
   std::int64_t row_bytes() const { return columns * size_of(type); }
   std::int64_t chunk_bytes() const { return chunk_rows * row_bytes(); }
@@ -46,7 +52,7 @@ struct EncodedArray {
 };
 
 /// The shape under which a view is stored. Chunks of about 256 KiB: many enough to share among
-/// threads, few enough for HDF5's index.
+/// threads, few enough for HDF5's index. Arrays of up to kMostCompactBytes are compact.
 ArrayShape shape_of(const ArrayView& view, Compression compression);
 
 /// Encodes chunk `index` of shape_of(view, compression) to the bytes that HDF5's own filters

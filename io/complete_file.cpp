@@ -36,7 +36,7 @@ Hdf5File open_complete(const std::filesystem::path& path, const FileFormat& form
   return file;
 }
 
-std::string complete_file(DigestedFile& digested, const AtomicFile& target,
+std::string complete_file(DigestedFile& digested, AtomicFile& target,
                           const std::function<std::string(const std::filesystem::path&)>& verify) {
   std::string digest = digested.digest().hex();
   Hdf5File& file = digested.file();

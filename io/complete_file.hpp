@@ -28,7 +28,7 @@ Hdf5File open_complete(const std::filesystem::path& path, const FileFormat& form
 /// disk. Then `verify` reads it from the path that it is given, and returns the digest that it
 /// found stored. What it throws becomes an Error that names the final file. Returns the digest;
 /// `target` is left to be committed.
-std::string complete_file(DigestedFile& file, const AtomicFile& target,
+std::string complete_file(DigestedFile& file, AtomicFile& target,
                           const std::function<std::string(const std::filesystem::path&)>& verify);
 
 }  // namespace semigeo::io

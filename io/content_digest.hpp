@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/hdf5.hpp"
+#include "io/hdf5_array.hpp"
 
 namespace semigeo::io {
 

@@ -11,7 +11,7 @@ namespace semigeo::io {
 
 // What the writer and the reader of a dataset agree on; io/DATASET.md is its description.
 
-inline constexpr std::int64_t kDatasetFormatVersion = 3;
+inline constexpr std::int64_t kDatasetFormatVersion = 4;
 inline constexpr FileFormat kDatasetFormat = {.name = "semigeo-dataset",
                                               .version = kDatasetFormatVersion,
                                               .noun = "dataset",

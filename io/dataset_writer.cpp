@@ -104,7 +104,7 @@ void DatasetWriter::write_level(const LevelAttributes& attributes, const Encoded
     write(level, format_of("principal_direction_2"), fields.principal->direction_2, vertices_);
   }
   write_features(file_, level, fields.features);
-  feature_counts_.push_back(counts_of(fields.features).total());
+  feature_counts_.push_back(fields.features.counts.total());
   if (!connectivity_pending_)
     for (const LevelArray& array : kLevelArrays)
       if (array.connectivity && (filled_ || array.presence != Presence::filled))
@@ -141,7 +141,7 @@ std::string DatasetWriter::finish() {
   });
   // The sidecar first: a dataset under its final name counts as done and is not looked at again.
   write_file_atomically(sidecar_of(target_.final_path()),
-                        xdmf_text(target_.final_path().filename().string(), steps_));
+                        xdmf_text(target_.final_path().filename().string(), steps_), Folder::left);
   target_.commit();
   return digest;
 }

@@ -17,6 +17,7 @@ enum class ElementType {
   uint8,
   uint16,
   feature,
+  contour,
   oriented_feature,
   posting
 };
@@ -28,8 +29,8 @@ struct RecordMember {
   int columns = 1;
 };
 
-/// ElementType::feature, a row of a feature table; kernels::Feature says what the members mean.
-inline constexpr std::array<RecordMember, 8> kFeatureMembers = {{
+/// ElementType::feature, a row of a level's features; kernels::Feature says what most members mean.
+inline constexpr std::array<RecordMember, 10> kFeatureMembers = {{
     {"vertex", ElementType::int64},
     {"value", ElementType::float32},
     {"prominence", ElementType::float32},
@@ -38,6 +39,16 @@ inline constexpr std::array<RecordMember, 8> kFeatureMembers = {{
     {"normal", ElementType::float32, 3},
     {"scale_free_gaussian", ElementType::float32},
     {"scale_free_mean", ElementType::float32},
+    {"kind", ElementType::int32},
+    {"contour_point", ElementType::int64},
+}};
+
+/// ElementType::contour, a row of a level's contours.
+inline constexpr std::array<RecordMember, 4> kContourMembers = {{
+    {"first", ElementType::int64},
+    {"count", ElementType::int64},
+    {"kind", ElementType::int32},
+    {"closed", ElementType::int32},
 }};
 
 /// ElementType::oriented_feature, a feature of a library's model: kernels::OrientedFeature.
@@ -63,6 +74,8 @@ constexpr std::span<const RecordMember> members_of(ElementType type) {
   switch (type) {
     case ElementType::feature:
       return kFeatureMembers;
+    case ElementType::contour:
+      return kContourMembers;
     case ElementType::oriented_feature:
       return kOrientedFeatureMembers;
     case ElementType::posting:
@@ -84,18 +97,15 @@ constexpr std::int64_t size_of(ElementType type) {
       return 1;
     case ElementType::uint16:
       return 2;
-    case ElementType::feature:
-    case ElementType::oriented_feature:
-    case ElementType::posting: {
-      std::int64_t size = 0;
-      for (const RecordMember& member : members_of(type))
-        size += member.columns * size_of(member.type);
-      return size;
-    }
+    default:
+      break;  // a record
   }
-  return 0;
+  std::int64_t size = 0;
+  for (const RecordMember& member : members_of(type)) size += member.columns * size_of(member.type);
+  return size;
 }
-static_assert(size_of(ElementType::feature) == 60);
+static_assert(size_of(ElementType::feature) == 72);
+static_assert(size_of(ElementType::contour) == 24);
 static_assert(size_of(ElementType::oriented_feature) == 38);
 static_assert(size_of(ElementType::posting) == 26);
 
@@ -117,7 +127,9 @@ constexpr std::string_view name_of(ElementType type) {
     case ElementType::feature:
       return "{vertex:int64,value:float32,prominence:float32,position:float32[3],"
              "initial_position:float32[3],normal:float32[3],scale_free_gaussian:float32,"
-             "scale_free_mean:float32}";
+             "scale_free_mean:float32,kind:int32,contour_point:int64}";
+    case ElementType::contour:
+      return "{first:int64,count:int64,kind:int32,closed:int32}";
     case ElementType::oriented_feature:
       return "{position:float32[3],normal:float32[3],scale_free_gaussian:float32,"
              "scale_free_mean:float32,value:float32,code:uint8,level:uint8}";

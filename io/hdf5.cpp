@@ -15,6 +15,8 @@ namespace {
 constexpr const char* kDamaged =
     "the file is damaged or not one of semigeo's: remove it and run again, or run with --verify";
 
+constexpr unsigned kMostInHeader = 48;
+
 /// What HDF5 says of an error; nothing if there was no memory to keep it in.
 using Reason = std::optional<std::string>;
 
@@ -35,6 +37,14 @@ Hdf5Handle file_access() {
   // network file systems without locks would refuse to open them.
   H5Pset_file_locking(access.get(), false, true);
   return access;
+}
+
+// No times, and up to kMostInHeader entries or attributes in the group's header: beyond, each group
+// gets a heap and an index of some kB for them.
+void prepare_group(hid_t properties) {
+  H5Pset_obj_track_times(properties, false);
+  H5Pset_link_phase_change(properties, kMostInHeader, kMostInHeader / 2);
+  H5Pset_attr_phase_change(properties, kMostInHeader, kMostInHeader / 2);
 }
 
 herr_t collect_link(hid_t, const char* name, const H5L_info_t* info, void* data) noexcept {
@@ -101,7 +111,7 @@ Hdf5File Hdf5File::create(const std::filesystem::path& file,
                           const std::filesystem::path& shown_as) {
   prepare_library();
   const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
-  H5Pset_obj_track_times(creation.get(), false);
+  prepare_group(creation.get());
   const Hdf5Handle access = file_access();
   Hdf5File result({}, shown_as.empty() ? file : shown_as, true);
   result.handle_ = Hdf5Handle(
@@ -121,20 +131,25 @@ Hdf5File Hdf5File::open(const std::filesystem::path& file, const std::filesystem
 }
 
 void Hdf5File::create_group(const std::string& path) {
-  const std::int64_t file = id();
+  const Entry place = entry(path);
   const Hdf5Handle properties(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
-  H5Pset_obj_track_times(properties.get(), false);
+  prepare_group(properties.get());
   Hdf5Handle group(
-      checked(H5Gcreate2(file, path.c_str(), H5P_DEFAULT, properties.get(), H5P_DEFAULT), path,
+      checked(H5Gcreate2(place.group, place.name, H5P_DEFAULT, properties.get(), H5P_DEFAULT), path,
               "create the group"),
-      H5Gclose);
-  checked(group.close(), path, "close the group");
+      H5Oclose);
+  checked(opened_.close(), opened_path_, "close the object");
+  opened_ = std::move(group);
+  opened_path_ = path;
 }
 
 void Hdf5File::link(const std::string& existing, const std::string& path) {
-  const std::int64_t file = id();
-  checked(H5Lcreate_hard(file, existing.c_str(), file, path.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+  const Entry place = entry(path);
+  checked(H5Lcreate_hard(handle_.get(), existing.c_str(), place.group, place.name, H5P_DEFAULT,
+                         H5P_DEFAULT),
           path, "create the link");
+  const auto known = arrays_.find(existing);
+  if (known != arrays_.end()) arrays_.emplace(path, known->second);
 }
 
 void Hdf5File::flush() {
@@ -143,37 +158,45 @@ void Hdf5File::flush() {
 
 void Hdf5File::close() {
   prepare_library();
+  checked(opened_.close(), std::exchange(opened_path_, ""), "close the object");
   checked(handle_.close(), "", "close it");
 }
 
-Hdf5Handle Hdf5File::open_object(const std::string& path) const {
-  return {checked(H5Oopen(id(), path.c_str(), H5P_DEFAULT), path, "open the object"), H5Oclose};
+std::int64_t Hdf5File::opened(const std::string& path) const {
+  const std::int64_t file = id();
+  if (path.empty() || path == "/") return file;
+  if (path != opened_path_) {
+    checked(opened_.close(), std::exchange(opened_path_, ""), "close the object");
+    opened_ = Hdf5Handle(checked(H5Oopen(file, path.c_str(), H5P_DEFAULT), path, "open the object"),
+                         H5Oclose);
+    opened_path_ = path;
+  }
+  return opened_.get();
+}
+
+Hdf5File::Entry Hdf5File::entry(const std::string& path) const {
+  const std::size_t slash = path.rfind('/');
+  if (slash == std::string::npos) return {id(), path.c_str()};
+  return {opened(path.substr(0, slash)), path.c_str() + slash + 1};
 }
 
 bool Hdf5File::has(const std::string& path) const {
-  const std::int64_t file = id();
-  if (path == "/") return true;
-  for (std::size_t slash = 1; slash != std::string::npos;) {
-    slash = path.find('/', slash);
-    const std::string part = path.substr(0, slash);
-    if (H5Lexists(file, part.c_str(), H5P_DEFAULT) <= 0) return false;
-    if (slash != std::string::npos) ++slash;
-  }
-  return true;
+  if (path.empty() || path == "/" || path == opened_path_ || arrays_.contains(path)) return true;
+  if (!has(path.substr(0, path.rfind('/')))) return false;
+  const Entry place = entry(path);
+  return H5Lexists(place.group, place.name, H5P_DEFAULT) > 0;
 }
 
 std::vector<Hdf5Link> Hdf5File::links(const std::string& group) const {
-  const std::int64_t file = id();
+  const std::int64_t place = opened(group);
   std::vector<Hdf5Link> result;
-  checked(H5Literate_by_name(file, group.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_link,
-                             &result, H5P_DEFAULT),
-          group, "list the group");
+  checked(H5Literate(place, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_link, &result), group,
+          "list the group");
   for (Hdf5Link& entry : result) {
     if (entry.address == 0) continue;  // a soft or external link
-    const std::string path = (group == "/" ? "" : group) + "/" + entry.name;
     H5O_info_t info;
-    checked(H5Oget_info_by_name2(file, path.c_str(), &info, H5O_INFO_BASIC, H5P_DEFAULT), path,
-            "open the object");
+    checked(H5Oget_info_by_name2(place, entry.name.c_str(), &info, H5O_INFO_BASIC, H5P_DEFAULT),
+            (group == "/" ? "" : group) + "/" + entry.name, "open the object");
     if (info.type == H5O_TYPE_GROUP) entry.kind = Hdf5Link::Kind::group;
     if (info.type == H5O_TYPE_DATASET) entry.kind = Hdf5Link::Kind::array;
   }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -65,8 +66,8 @@ class Hdf5Handle {
 };
 
 /// An HDF5 file restricted to what semigeo stores: groups, attributes of AttributeValue's types
-/// with strings of fixed length, arrays of one or two dimensions chunked by rows, virtual arrays
-/// over arrays of the same file, and hard links. Anything else is an Error when met.
+/// with strings of fixed length, arrays of one or two dimensions chunked by rows or compact,
+/// virtual arrays over arrays of the same file, and hard links. Anything else is an Error when met.
 ///
 /// Every failure is an Error that names the file, the object and HDF5's innermost reason. One
 /// thread at a time per file; HDF5 itself serialises calls for different files.
@@ -84,7 +85,7 @@ class Hdf5File {
 
   void create_group(const std::string& path);
   void write_array(const std::string& path, const EncodedArray& array);
-  class Growing;
+  class Growing;  // io/hdf5_array.hpp
   /// An array whose chunks come one by one; others may be written in between.
   Growing begin_array(const std::string& path, const ArrayShape& shape);
   void write_virtual(const std::string& path, ElementType type, int columns,
@@ -103,7 +104,7 @@ class Hdf5File {
   std::vector<Hdf5Link> links(const std::string& group) const;
   std::uint64_t address(const std::string& path) const;
   /// All of an object's, by name. Looking at one of them again costs nothing.
-  std::vector<Hdf5Attribute> attributes(const std::string& object) const;
+  const std::vector<Hdf5Attribute>& attributes(const std::string& object) const;
   AttributeValue read_attribute(const std::string& object, const std::string& name) const;
   /// The same where only this type will do; Error if it has another.
   template <typename Value>
@@ -115,9 +116,9 @@ class Hdf5File {
   /// As io::attribute_type, or "unsupported".
   std::string attribute_type(const std::string& object, const std::string& name) const;
 
-  class Array;
+  class Array;  // io/hdf5_array.hpp
+  /// What it is, and all of a small array, is looked at once: opening it again costs nothing.
   Array open_array(const std::string& path) const;
-  /// Of an array as it was when it was opened first: looking again costs nothing.
   ArrayShape shape_of(const std::string& path) const { return look_at(path).shape; }
   bool is_virtual(const std::string& path) const { return look_at(path).is_virtual; }
 
@@ -133,68 +134,43 @@ class Hdf5File {
   [[noreturn]] void fail(const std::string& place, const std::string& action) const;
   std::int64_t checked(std::int64_t result, const std::string& place, const char* action) const;
   std::int64_t id() const;
-  Hdf5Handle open_object(const std::string& path) const;
-  AttributeValue value_of(const Hdf5Handle& attribute, const std::string& place) const;
+  /// The object, open until another one is asked for: most calls are about that of the one before.
+  std::int64_t opened(const std::string& path) const;
+  struct Entry {
+    std::int64_t group;  // of an object, open
+    const char* name;    // of the object in it; lives as long as the path
+  };
+  Entry entry(const std::string& path) const;
+  std::int64_t type_of(ElementType type) const;
+  std::optional<ElementType> element_type(std::int64_t type) const;
+  Hdf5Attribute read(const Hdf5Handle& attribute, const std::string& object,
+                     const std::string& name) const;
+  const Hdf5Attribute* find_known(const std::string& object, const std::string& name) const;
   Hdf5Handle open_attribute(const std::string& object, const std::string& name) const;
+
+  struct KnownArray {
+    ArrayShape shape;
+    bool is_virtual = false;
+    std::vector<VirtualPiece> pieces;  // of a virtual one
+    std::vector<std::byte> rows;       // of a compact one
+  };
+  const KnownArray& look_at(const std::string& path) const;
+  KnownArray described(const std::string& path, std::int64_t array) const;
+  void describe_chunks(const std::string& path, std::int64_t creation, ArrayShape& shape) const;
+  std::vector<std::byte> compact_rows(const std::string& path, std::int64_t array,
+                                      const ArrayShape& shape) const;
+  std::vector<VirtualPiece> pieces_of(const std::string& path, std::int64_t creation,
+                                      int columns) const;
 
   Hdf5Handle handle_;
   std::filesystem::path shown_as_;
   bool writing_ = false;
-  // What has been looked at; a file that is read does not change.
-  struct KnownArray {
-    ArrayShape shape;
-    bool is_virtual;
-  };
-  const KnownArray& look_at(const std::string& path) const;
+  // What has been looked at or written, neither of which changes.
   mutable std::map<std::string, KnownArray> arrays_;
-  mutable std::map<std::pair<std::string, std::string>, AttributeValue> attributes_;
-};
-
-/// An array that is being written to a file, which must outlive it and stay where it is.
-class Hdf5File::Growing {
- public:
-  const ArrayShape& shape() const { return shape_; }
-  const std::string& path() const { return path_; }
-  void write_chunk(const EncodedChunk& chunk);  ///< the next
-  void close();                                 ///< after the last chunk
-
- private:
-  friend class Hdf5File;
-  Growing(const Hdf5File& file, std::string path, const ArrayShape& shape, Hdf5Handle handle)
-      : file_(&file), path_(std::move(path)), shape_(shape), handle_(std::move(handle)) {}
-
-  const Hdf5File* file_;
-  std::string path_;
-  ArrayShape shape_;
-  Hdf5Handle handle_;
-  std::int64_t written_ = 0;
-};
-
-/// An open array of a file, which must outlive it.
-class Hdf5File::Array {
- public:
-  /// For a virtual array only type, rows and columns mean anything.
-  const ArrayShape& shape() const { return shape_; }
-  const std::string& path() const { return path_; }
-  const Hdf5File& file() const { return *file_; }
-  bool is_virtual() const { return is_virtual_; }
-  bool has_attributes() const;
-  /// Bytes of all its chunks in the file.
-  std::int64_t stored_bytes() const;
-  /// The chunk as it lies in the file, without its hash.
-  EncodedChunk read_chunk(std::int64_t index) const;
-  std::vector<VirtualPiece> virtual_pieces() const;
-
- private:
-  friend class Hdf5File;
-  Array(const Hdf5File& file, std::string path, Hdf5Handle handle);
-  void describe_chunks(std::int64_t creation);
-
-  const Hdf5File* file_;
-  std::string path_;
-  Hdf5Handle handle_;
-  ArrayShape shape_;
-  bool is_virtual_ = false;
+  mutable std::map<std::string, std::vector<Hdf5Attribute>> attributes_;
+  mutable std::map<ElementType, Hdf5Handle> records_;  // types of theirs
+  mutable std::string opened_path_;
+  mutable Hdf5Handle opened_;  // after handle_, so that it is closed before
 };
 
 }  // namespace semigeo::io

@@ -54,8 +54,7 @@ AttributeShape attribute_shape(hid_t attribute) {
 }
 
 /// As io::attribute_type has it, or "unsupported".
-std::string type_of(hid_t attribute) {
-  const AttributeShape shape = attribute_shape(attribute);
+std::string text_of(const AttributeShape& shape) {
   const auto count = static_cast<std::size_t>(shape.count);
   switch (shape.kind) {
     case AttributeShape::Kind::integer:
@@ -93,14 +92,15 @@ std::string attribute_type(const AttributeValue& value) {
 
 void Hdf5File::write_attribute(const std::string& object, const std::string& name,
                                const AttributeValue& value) {
-  const Hdf5Handle owner = open_object(object);
+  const std::int64_t owner = opened(object);
+  attributes_.erase(object);
   const auto write = [&](hid_t type, hid_t space, const void* data, std::size_t bytes) {
     const std::string place = object + ", attribute " + name;
     if (bytes > kLargestAttribute)
       throw Error(shown_as_, place, "has " + std::to_string(bytes) + " bytes, more than HDF5 holds",
                   "at most " + std::to_string(kLargestAttribute) + " are possible");
     Hdf5Handle attribute(
-        checked(H5Acreate2(owner.get(), name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), place,
+        checked(H5Acreate2(owner, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), place,
                 "create the attribute"),
         H5Aclose);
     checked(H5Awrite(attribute.get(), type, data), place, "write the attribute");
@@ -123,25 +123,33 @@ void Hdf5File::write_attribute(const std::string& object, const std::string& nam
 }
 
 Hdf5Handle Hdf5File::open_attribute(const std::string& object, const std::string& name) const {
-  const Hdf5Handle owner = open_object(object);
-  return {checked(H5Aopen(owner.get(), name.c_str(), H5P_DEFAULT), object + ", attribute " + name,
-                  "open the attribute"),
+  return {checked(H5Aopen(opened(object), name.c_str(), H5P_DEFAULT),
+                  object + ", attribute " + name, "open the attribute"),
           H5Aclose};
 }
 
+const Hdf5Attribute* Hdf5File::find_known(const std::string& object,
+                                          const std::string& name) const {
+  const auto known = attributes_.find(object);
+  if (known == attributes_.end()) return nullptr;
+  const auto found = std::ranges::lower_bound(known->second, name, {}, &Hdf5Attribute::name);
+  return found == known->second.end() || found->name != name ? nullptr : &*found;
+}
+
 bool Hdf5File::has_attribute(const std::string& object, const std::string& name) const {
-  const Hdf5Handle owner = open_object(object);
-  return checked(H5Aexists(owner.get(), name.c_str()), object + ", attribute " + name,
+  if (find_known(object, name) != nullptr) return true;
+  return checked(H5Aexists(opened(object), name.c_str()), object + ", attribute " + name,
                  "look for the attribute") > 0;
 }
 
 AttributeValue Hdf5File::read_attribute(const std::string& object, const std::string& name) const {
-  const auto known = attributes_.find({object, name});
-  if (known != attributes_.end()) return known->second;
-  return value_of(open_attribute(object, name), object + ", attribute " + name);
+  if (const Hdf5Attribute* known = find_known(object, name)) return known->value;
+  return read(open_attribute(object, name), object, name).value;
 }
 
-AttributeValue Hdf5File::value_of(const Hdf5Handle& attribute, const std::string& place) const {
+Hdf5Attribute Hdf5File::read(const Hdf5Handle& attribute, const std::string& object,
+                             const std::string& name) const {
+  const std::string place = object + ", attribute " + name;
   const AttributeShape shape = attribute_shape(attribute.get());
   const auto read = [&](hid_t type, void* data) {
     checked(H5Aread(attribute.get(), type, data), place, "read the attribute");
@@ -151,17 +159,24 @@ AttributeValue Hdf5File::value_of(const Hdf5Handle& attribute, const std::string
     read(type, values.data());
     return shape.scalar ? AttributeValue(values.front()) : AttributeValue(values);
   };
+  Hdf5Attribute result{name, text_of(shape), {}};
   switch (shape.kind) {
     case AttributeShape::Kind::integer:
-      return numbers(H5T_STD_I64LE, std::int64_t{});
+      result.value = numbers(H5T_STD_I64LE, std::int64_t{});
+      return result;
     case AttributeShape::Kind::real:
-      return numbers(H5T_IEEE_F64LE, double{});
+      result.value = numbers(H5T_IEEE_F64LE, double{});
+      return result;
     case AttributeShape::Kind::text: {
       if (shape.count > kLargestAttribute) break;
       std::string text(static_cast<std::size_t>(shape.count), '\0');
       const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose);
       read(type.get(), text.data());
-      return text == std::string(1, '\0') ? std::string() : text;  // HDF5 has no size of 0
+      if (text != std::string(1, '\0'))
+        result.value = text;  // HDF5 has no size of 0
+      else
+        result.value = std::string();
+      return result;
     }
     case AttributeShape::Kind::unsupported:
       break;
@@ -170,25 +185,21 @@ AttributeValue Hdf5File::value_of(const Hdf5Handle& attribute, const std::string
 }
 
 std::string Hdf5File::attribute_type(const std::string& object, const std::string& name) const {
-  return type_of(open_attribute(object, name).get());
+  if (const Hdf5Attribute* known = find_known(object, name)) return known->type;
+  return text_of(attribute_shape(open_attribute(object, name).get()));
 }
 
-std::vector<Hdf5Attribute> Hdf5File::attributes(const std::string& object) const {
-  std::vector<Hdf5Attribute> attributes;
-  const Hdf5Handle owner = open_object(object);
+const std::vector<Hdf5Attribute>& Hdf5File::attributes(const std::string& object) const {
+  const auto known = attributes_.find(object);
+  if (known != attributes_.end()) return known->second;
   std::vector<std::string> names;
-  checked(H5Aiterate2(owner.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_name, &names),
+  checked(H5Aiterate2(opened(object), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_name, &names),
           object, "list the attributes");
   std::ranges::sort(names);
-  for (const std::string& name : names) {
-    const std::string place = object + ", attribute " + name;
-    const Hdf5Handle attribute(
-        checked(H5Aopen(owner.get(), name.c_str(), H5P_DEFAULT), place, "open the attribute"),
-        H5Aclose);
-    attributes.push_back({name, type_of(attribute.get()), value_of(attribute, place)});
-    attributes_.try_emplace({object, name}, attributes.back().value);
-  }
-  return attributes;
+  std::vector<Hdf5Attribute> found;
+  for (const std::string& name : names)
+    found.push_back(read(open_attribute(object, name), object, name));
+  return attributes_.emplace(object, std::move(found)).first->second;
 }
 
 }  // namespace semigeo::io

@@ -127,7 +127,7 @@ bool take_over(const fs::path& ours, const fs::path& file) {
 
 ArchiveLock::ArchiveLock(const fs::path& archive)
     : file_(archive / kFileName), owner_(this_process()) {
-  const io::AtomicFile ours(file_);  // for its name, and to be removed whatever comes
+  io::AtomicFile ours(file_);  // for its name, and to be removed whatever comes
   {
     const io::FileDescriptor text(ours.temporary_path(), O_WRONLY | O_CREAT | O_EXCL);
     if (!text) fail(file_, errno);

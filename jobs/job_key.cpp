@@ -6,7 +6,7 @@ namespace semigeo::jobs {
 namespace {
 
 // Parts of every key: raised whenever the same inputs and parameters give other bytes.
-constexpr const char* kSurfaceJobVersion = "surface 9";
+constexpr const char* kSurfaceJobVersion = "surface 10";
 constexpr const char* kTripletsJobVersion = "triplets 1";
 constexpr const char* kPartitionJobVersion = "partition 1";
 constexpr const char* kLibraryJobVersion = "library 1";

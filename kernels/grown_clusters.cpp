@@ -18,7 +18,7 @@ struct Parameters {
 /// A growing cluster: sums of its members' parameters.
 class Cluster {
  public:
-  Cluster(const Parameters& first, double diagonal, const ClusterOptions& options)
+  Cluster(const Parameters& first, double diagonal, const PoseTolerance& options)
       : centre_(first),
         log_scale_reach_(options.log_scale),
         reach_(options.distance * diagonal),
@@ -71,7 +71,7 @@ class Cluster {
 }  // namespace
 
 GrownCluster largest_grown_cluster(std::span<const Similarity> poses, const Eigen::Vector3d& centre,
-                                   double diagonal, const ClusterOptions& options) {
+                                   double diagonal, const PoseTolerance& options) {
   std::vector<Parameters> free;  // in no cluster yet
   free.reserve(poses.size());
   for (const Similarity& pose : poses)

@@ -23,6 +23,6 @@ struct GrownCluster {
 /// model's centre instead of d, h, q, which depend on where in the model the triplet lies; the
 /// three angles are compared as one rotation, since they jump at their poles.
 GrownCluster largest_grown_cluster(std::span<const Similarity> poses, const Eigen::Vector3d& centre,
-                                   double diagonal, const ClusterOptions& options);
+                                   double diagonal, const PoseTolerance& options);
 
 }  // namespace semigeo::kernels

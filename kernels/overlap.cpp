@@ -101,45 +101,50 @@ std::int64_t SampleTree::nearest(const Vector3f& p, float limit) const {
 double Overlap::agreement() const {
   if (match <= 0) return 0;
   const double share = match / (match + conflict);
-  return match * share * share;
+  return match * closeness * share * share;
 }
 
 Overlap overlap(const SurfaceSamples& model, double diagonal, const Similarity& pose,
-                const SampleTree& scene, const OverlapOptions& options, std::int64_t count,
+                const SampleTree& tree, const OverlapOptions& options, std::int64_t count,
                 std::span<const std::uint8_t> used) {
   const FastPose fast(pose);
+  const SurfaceSamples& scene = tree.samples();
   const double size = diagonal * pose.scale;
   const auto tolerance = static_cast<float>(options.match * size);
   const auto limit = static_cast<float>(options.conflict * size);
-  const float spacing = scene.samples().spacing;
   const std::size_t n = bounded(count, model);
   std::int64_t matches = 0;
   std::int64_t conflicts = 0;
+  double closeness = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const Vector3f p = fast.point(model.points[i]);
-    const std::int64_t near = scene.nearest(p, limit + spacing);
+    const std::int64_t near = tree.nearest(p, limit + scene.spacing);
     if (near < 0 || (!used.empty() && used[near] != 0)) continue;
-    const Vector3f& normal = scene.samples().normals[near];
-    if (on_surface(p, scene.samples().points[near], normal, tolerance, spacing) &&
-        normal.dot(fast.rotation * model.normals[i]) > options.min_cosine) {
+    const Vector3f& q = scene.points[near];
+    const Vector3f& normal = scene.normals[near];
+    const float cosine = normal.dot(fast.rotation * model.normals[i]);
+    const float height = (p - q).dot(normal);
+    if (on_surface(p, q, normal, tolerance, scene.spacing) && cosine > options.min_cosine) {
       ++matches;
-    } else {
+      closeness += 1 - (height / tolerance) * (height / tolerance);
+    } else if (scene.rim.empty() || (scene.rim[near] == 0 && !(cosine < 0 && height < 0))) {
       ++conflicts;
     }
   }
-  if (n == 0) return {};
+  if (matches == 0 && conflicts == 0) return {};
   return {.match = static_cast<double>(matches) / static_cast<double>(n),
-          .conflict = static_cast<double>(conflicts) / static_cast<double>(n)};
+          .conflict = static_cast<double>(conflicts) / static_cast<double>(n),
+          .closeness = matches == 0 ? 0 : closeness / static_cast<double>(matches)};
 }
 
 std::vector<std::uint8_t> explained(const SampleTree& model, double diagonal,
                                     const Similarity& pose, const SurfaceSamples& scene,
-                                    const OverlapOptions& options,
+                                    const OverlapOptions& options, std::int64_t count,
                                     std::span<const std::uint8_t> used) {
   const FastPose back(pose.inverse());
   const auto tolerance = static_cast<float>(options.match * diagonal);
   const float spacing = model.samples().spacing;
-  std::vector<std::uint8_t> result(scene.points.size());
+  std::vector<std::uint8_t> result(bounded(count, scene));
   for (std::size_t i = 0; i < result.size(); ++i) {
     if (!used.empty() && used[i] != 0) continue;
     const Vector3f p = back.point(scene.points[i]);

@@ -38,31 +38,34 @@ struct OverlapOptions {
 
 /// How a posed model lies in a scene.
 struct Overlap {
-  double match = 0;     ///< share of the model's samples that lie on the scene's surface
-  double conflict = 0;  ///< share of those near it that disagree; what is far from it is neutral
+  double match = 0;      ///< share of the model's samples that lie on the scene's surface
+  double conflict = 0;   ///< share of those near it that disagree; what is far from it is neutral
+  double closeness = 0;  ///< of what matches: mean of 1 - (distance / tolerance)^2
 
-  /// What a match is worth that is contradicted: match (match / (match + conflict))^2.
+  /// What a match is worth that is contradicted: match closeness (match / (match + conflict))^2.
   double agreement() const;
 };
 
-/// Of the first `count` samples of the model. Source: thesis 4.6. Differs: surfaces are compared,
-/// not triplets. `used` marks samples of the scene that belong to something else already: what lies
-/// on them is neutral; empty: none.
+/// Of the first `count` samples of the model. `used` marks samples of the scene that belong to
+/// something else already: what lies on them is neutral; empty: none. Neutral as well: what is
+/// nearest to the scene's rim; and, in a scene with a rim, what faces the other way behind the
+/// scene's surface, as the far sides of objects do that were seen from one side.
+/// Source: thesis 4.6. Differs: surfaces are compared, not triplets.
 Overlap overlap(const SurfaceSamples& model, double diagonal, const Similarity& pose,
                 const SampleTree& scene, const OverlapOptions& options, std::int64_t count,
                 std::span<const std::uint8_t> used = {});
 
-/// Marks the scene's samples that lie on the posed model: result[i] = 1. Looks at those with
-/// used[i] = 0 only. `model` are the samples of the model.
+/// Marks the scene's samples that lie on the posed model: result[i] = 1. Looks at the first `count`
+/// of them, and at those with used[i] = 0 only. `model` are the samples of the model.
 std::vector<std::uint8_t> explained(const SampleTree& model, double diagonal,
                                     const Similarity& pose, const SurfaceSamples& scene,
-                                    const OverlapOptions& options,
+                                    const OverlapOptions& options, std::int64_t count,
                                     std::span<const std::uint8_t> used = {});
 
 struct RefineOptions {
   std::vector<double> reach = {0.05, 0.02, 0.01, 0.008};  ///< stage by stage, in diagonals
   int iterations = 4;                                     ///< of each stage
-  std::int64_t count = 600;                               ///< first samples of the model
+  std::int64_t count = 500;                               ///< first samples of the model
   double min_cosine = 0.6;
 };
 

@@ -14,6 +14,7 @@ struct SurfaceSamples {
   std::vector<Eigen::Vector3f> points;   ///< (M) length units
   std::vector<Eigen::Vector3f> normals;  ///< (M)
   float spacing = 0;                     ///< square root of the area that each stands for
+  std::vector<std::uint8_t> rim = {};    ///< (M) 1: near the boundary; empty: there is none
 };
 
 /// What a library knows of an object.

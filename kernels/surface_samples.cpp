@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "kernels/overlap.hpp"
 #include "kernels/z_order.hpp"
 
 namespace semigeo::kernels {
@@ -45,6 +46,29 @@ std::vector<std::int32_t> along_curve(std::span<const Vector3f> points, Triangle
   order.reserve(keys.size());
   for (const auto& [key, face] : keys) order.push_back(face);
   return order;
+}
+
+/// Pairs of vertices that only one triangle joins.
+std::vector<std::array<std::int32_t, 2>> boundary_edges(Triangles triangles) {
+  std::vector<std::uint64_t> edges;
+  edges.reserve(3 * triangles.size());
+  for (const auto& t : triangles)
+    for (int i = 0; i < 3; ++i) {
+      const auto [low, high] = std::minmax(t[i], t[(i + 1) % 3]);
+      edges.push_back(std::uint64_t{static_cast<std::uint32_t>(low)} << 32 |
+                      static_cast<std::uint32_t>(high));
+    }
+  std::ranges::sort(edges);
+  std::vector<std::array<std::int32_t, 2>> single;
+  for (std::size_t i = 0; i < edges.size();) {
+    std::size_t j = i + 1;
+    while (j < edges.size() && edges[j] == edges[i]) ++j;
+    if (j == i + 1)
+      single.push_back({static_cast<std::int32_t>(edges[i] >> 32),
+                        static_cast<std::int32_t>(edges[i] & 0xffffffff)});
+    i = j;
+  }
+  return single;
 }
 
 /// The fractions of k times two irrational numbers: evenly spread over the unit square (R.
@@ -96,6 +120,25 @@ SurfaceSamples sample_surface(std::span<const Vector3f> points, Triangles triang
     samples.normals.push_back(mixed(normals[a], normals[b], normals[c]).stableNormalized());
   }
   return samples;
+}
+
+void mark_rim(std::span<const Vector3f> points, Triangles triangles, SurfaceSamples& samples) {
+  samples.rim.clear();
+  const auto edges = boundary_edges(triangles);
+  if (edges.empty() || samples.points.empty()) return;
+  SurfaceSamples boundary;
+  for (const auto& [a, b] : edges) {
+    const float length = (points[b] - points[a]).norm();
+    const int steps = std::clamp(static_cast<int>(std::ceil(length / samples.spacing)), 1, 1000);
+    for (int i = 0; i < steps; ++i)
+      boundary.points.push_back(points[a] + (static_cast<float>(i) + 0.5F) /
+                                                static_cast<float>(steps) *
+                                                (points[b] - points[a]));
+  }
+  const SampleTree tree(boundary);
+  samples.rim.reserve(samples.points.size());
+  for (const Vector3f& p : samples.points)
+    samples.rim.push_back(tree.nearest(p, 2 * samples.spacing) >= 0 ? 1 : 0);
 }
 
 }  // namespace semigeo::kernels

@@ -53,7 +53,7 @@ struct Content {
             io::encode_array(io::array_of(std::span(gaussian)), compression),
             io::encode_array(io::array_of(std::span(mean)), compression),
             io::encode_array(io::array_of(std::span(completeness)), compression),
-            io::encode_features(features, compression)};
+            io::encode_features(io::tables_of(features), compression)};
   }
   std::int64_t vertices() const { return static_cast<std::int64_t>(points.size()); }
   /// Bytes of a level's fields before compression.

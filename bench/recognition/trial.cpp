@@ -107,8 +107,9 @@ Outcome try_scene(const Scene& scene, ModelSpan models, const std::vector<std::s
                   const engine::RunContext& context) {
   const kernels::BuiltSurface built = kernels::build_surface(kernels::TriangleMesh(scene.mesh));
   Seconds scale_space, search;
-  const kernels::RecognitionModel model =
-      timed(scale_space, [&] { return jobs::recognition_model(built, parameters, context); });
+  const kernels::RecognitionModel model = timed(scale_space, [&] {
+    return jobs::recognition_model(built, jobs::scene_parameters(parameters), context);
+  });
   const jobs::Recognition found = timed(search, [&] { return recogniser(model); });
   Outcome outcome = judged(scene, models, names, found);
   outcome.vertices = built.surface.vertex_count();

@@ -23,10 +23,21 @@ constexpr double kBandSlack = 1.075;
 constexpr std::int64_t kMostCompared = 3'000'000'000;
 constexpr std::size_t kShortlist = 200;      ///< models with the most votes
 constexpr std::size_t kMostMatches = 20000;  ///< of one model, the weightiest
-constexpr std::int64_t kCoarseSamples = 150;
-constexpr std::size_t kRefinedPerModel = 6;
-constexpr std::size_t kRefinedTogether = 150;
+
+// Each look at a pose costs more than the one before, and fewer poses are looked at.
+constexpr std::int64_t kGlanceSamples = 60;
+constexpr std::size_t kGlanced = 40;  ///< of one model, go on
+constexpr std::int64_t kCoarseSamples = 200;
+constexpr std::size_t kCoarseByOverlap = 5;  ///< of one model, are refined a little
+constexpr std::size_t kCoarseByWeight = 3;   ///< besides, whatever they look like
+constexpr std::int64_t kMiddleSamples = 400;
+constexpr std::size_t kRefinedPerModel = 4;
+constexpr std::size_t kRefinedTogether = 60;
 constexpr std::int64_t kFineSamples = 2000;
+constexpr std::int64_t kExplainedSamples = 4000;
+
+constexpr kernels::OverlapOptions kCoarse = {.match = 0.02, .conflict = 0.06, .min_cosine = 0.6};
+constexpr kernels::PoseTolerance kSupport = {.log_scale = 0.15, .distance = 0.06, .angle = 0.25};
 
 kernels::TripletOptions scene_triplets() {
   kernels::TripletOptions options;
@@ -44,6 +55,7 @@ struct Pose {
   Similarity pose;
   double cluster = 0;
   double coarse = 0;
+  double support = 0;
   kernels::Overlap overlap = {};
   double explained = 0;
   double score = 0;
@@ -52,6 +64,7 @@ struct Pose {
 struct Listed {
   std::int64_t model = 0;
   RecognitionModel record;
+  kernels::PoseVotes votes;
   std::optional<kernels::SampleTree> tree;
   std::vector<Pose> poses;
 };
@@ -118,17 +131,52 @@ class Recogniser {
                            kernels::feature_triangle(model.features, match.model_corners),
                            kernels::feature_triangle(scene_.features, match.scene_corners)),
                        match.weight});
-    for (const kernels::PoseCluster& cluster :
-         kernels::pose_clusters(votes, model.centre.cast<double>(), model.diagonal, {})) {
-      Pose pose{.listed = index, .pose = cluster.pose, .cluster = cluster.weight};
+    listed.votes = kernels::PoseVotes(votes, model.centre.cast<double>(), model.diagonal);
+    for (const kernels::PoseCluster& cluster : listed.votes.clusters())
+      listed.poses.push_back({.listed = index, .pose = cluster.pose, .cluster = cluster.weight});
+    look(listed, kGlanceSamples, kCoarse);
+    keep(listed.poses, kGlanced, kCoarseByWeight);
+    look(listed, kCoarseSamples, kCoarse);
+    keep(listed.poses, kCoarseByOverlap, kCoarseByWeight);
+    for (Pose& pose : listed.poses)
+      pose.pose = kernels::refined(model.samples, model.diagonal, pose.pose, tree_,
+                                   {.reach = {0.08, 0.05}, .iterations = 3, .count = 200});
+    leave_out_repeated(listed);
+    look(listed, kMiddleSamples, {});
+    keep(listed.poses, kRefinedPerModel, 0);
+  }
+
+  void look(Listed& listed, std::int64_t samples, const kernels::OverlapOptions& options) const {
+    const RecognitionModel& model = listed.record;
+    for (Pose& pose : listed.poses)
       pose.coarse =
-          kernels::overlap(model.samples, model.diagonal, pose.pose, tree_,
-                           {.match = 0.02, .conflict = 0.06, .min_cosine = 0.6}, kCoarseSamples)
+          kernels::overlap(model.samples, model.diagonal, pose.pose, tree_, options, samples)
               .agreement();
-      if (pose.coarse > 0) listed.poses.push_back(pose);
-    }
-    std::ranges::stable_sort(listed.poses, std::ranges::greater(), &Pose::coarse);
-    listed.poses.resize(std::min(listed.poses.size(), kRefinedPerModel));
+  }
+
+  /// The best by overlap, and the heaviest clusters of the rest.
+  static void keep(std::vector<Pose>& poses, std::size_t by_overlap, std::size_t by_weight) {
+    std::ranges::stable_sort(poses, std::ranges::greater(), &Pose::coarse);
+    if (poses.size() > by_overlap)
+      std::stable_sort(poses.begin() + static_cast<std::ptrdiff_t>(by_overlap), poses.end(),
+                       [](const Pose& a, const Pose& b) { return a.cluster > b.cluster; });
+    poses.resize(std::min(poses.size(), by_overlap + by_weight));
+  }
+
+  /// Of poses that have become one, the first stays.
+  static void leave_out_repeated(Listed& listed) {
+    const RecognitionModel& model = listed.record;
+    const Vector3d centre = model.centre.cast<double>();
+    std::vector<Pose> different;
+    for (const Pose& pose : listed.poses)
+      if (std::ranges::none_of(different, [&](const Pose& d) {
+            return std::abs(std::log(d.pose.scale / pose.pose.scale)) < 0.03 &&
+                   (d.pose.apply(centre) - pose.pose.apply(centre)).norm() <
+                       0.02 * model.diagonal * pose.pose.scale &&
+                   kernels::rotation_between(d.pose.rotation, pose.pose.rotation) < 0.06;
+          }))
+        different.push_back(pose);
+    listed.poses = std::move(different);
   }
 
   void choose_poses() {
@@ -145,7 +193,9 @@ class Recogniser {
 
   void verify(Pose& pose) const {
     const RecognitionModel& model = shortlist_[pose.listed].record;
-    pose.pose = kernels::refined(model.samples, model.diagonal, pose.pose, tree_, {});
+    pose.pose = kernels::refined(model.samples, model.diagonal, pose.pose, tree_,
+                                 {.reach = {0.03, 0.015, 0.01, 0.008}});
+    pose.support = shortlist_[pose.listed].votes.support(pose.pose, kSupport);
     measure(pose, {});
   }
 
@@ -155,8 +205,8 @@ class Recogniser {
     const RecognitionModel& model = listed.record;
     pose.overlap =
         kernels::overlap(model.samples, model.diagonal, pose.pose, tree_, {}, kFineSamples, used);
-    const auto marks =
-        kernels::explained(*listed.tree, model.diagonal, pose.pose, scene_.samples, {}, used);
+    const auto marks = kernels::explained(*listed.tree, model.diagonal, pose.pose, scene_.samples,
+                                          {}, kExplainedSamples, used);
     pose.explained = static_cast<double>(std::ranges::count(marks, 1)) /
                      static_cast<double>(std::max<std::size_t>(marks.size(), 1));
     pose.score = pose.overlap.agreement() * std::sqrt(pose.explained);
@@ -168,6 +218,8 @@ class Recogniser {
     candidate.model = listed.model;
     candidate.votes = matches_.votes[listed.model];
     candidate.cluster = pose.cluster;
+    candidate.support = pose.support;
+    candidate.closeness = pose.overlap.closeness;
     candidate.match = pose.overlap.match;
     candidate.conflict = pose.overlap.conflict;
     candidate.explained = pose.explained;
@@ -198,7 +250,8 @@ class Recogniser {
       const Listed& listed = shortlist_[best.listed];
       // A little more than what matches: rims of what is explained are nobody else's.
       const auto marks = kernels::explained(*listed.tree, listed.record.diagonal, best.pose,
-                                            scene_.samples, {.match = 0.02, .min_cosine = 0.3});
+                                            scene_.samples, {.match = 0.02, .min_cosine = 0.3},
+                                            static_cast<std::int64_t>(used.size()));
       for (std::size_t i = 0; i < marks.size(); ++i) used[i] |= marks[i];
       left.erase(left.begin());
       for_each(left.size(), [&](std::size_t i) { measure(left[i], used); });

@@ -20,9 +20,11 @@ struct RecognitionOptions {
 struct Candidate {
   std::int64_t model = 0;  ///< of HashLibrary::models
   double votes = 0;        ///< of scene triplets, each shared among what it matches
-  double cluster = 0;      ///< weight of the matches that agree on this pose
+  double cluster = 0;      ///< weight of the matches that agree on this pose, as it was found
+  double support = 0;      ///< and as it is now
   double match = 0;        ///< share of the model's surface that lies on the scene's
   double conflict = 0;     ///< share near the scene's surface that disagrees with it
+  double closeness = 0;    ///< of what matches: 1 on the scene's surface, 0 at the tolerance
   double explained = 0;    ///< share of the scene's surface that lies on the model's
   double score = 0;
   kernels::Similarity pose;  ///< model to scene, in coordinates of the files

@@ -100,18 +100,32 @@ std::int64_t samples_of(const Triangles& triangles, const RecognitionParameters&
                                 4 * static_cast<std::int64_t>(triangles.size()));
 }
 
+/// How many octave levels, the first of which has this sigma.
+int levels_of(double first_scale, float diagonal, const RecognitionParameters& parameters) {
+  constexpr int kMostLevels = 10;
+  int levels = parameters.levels;
+  // Two levels double sigma.
+  while (levels < kMostLevels &&
+         first_scale * std::exp2(0.5 * (levels - 1)) < parameters.least_reach * diagonal)
+    ++levels;
+  return levels;
+}
+
 /// Features on octave levels, and samples of level 0.
 void evolve(const kernels::Surface& surface, const RecognitionParameters& parameters,
             const engine::RunContext& context, kernels::RecognitionModel& model) {
   EvolvingSurface evolving(kernels::reordered(surface, kernels::locality_order(surface)), kOctaves,
                            context);
-  for (int level = 0; level < parameters.levels && !evolving.vanished(); ++level) {
+  int levels = 1;
+  for (int level = 0; level < levels && !evolving.vanished(); ++level) {
     const LevelFields fields = evolving.evaluate();
     if (level == 0) {
       const kernels::Surface& first = evolving.mesh().surface;
       measure(fields.points, model);
+      levels = levels_of(fields.scale, model.diagonal, parameters);
       model.samples = kernels::sample_surface(fields.points, first.triangles, fields.normals,
                                               samples_of(first.triangles, parameters));
+      kernels::mark_rim(fields.points, first.triangles, model.samples);
     }
     const kernels::LevelFeatures found = find_features(evolving, fields, {}, context);
     add_level(
@@ -120,12 +134,12 @@ void evolve(const kernels::Surface& surface, const RecognitionParameters& parame
           return found.of_kind[static_cast<int>(kind)];
         },
         model.features);
-    if (level + 1 < parameters.levels) evolving.move();
+    if (level + 1 < levels) evolving.move();
   }
 }
 
 /// Whether features of a dataset are those that its surface would be evolved anew for.
-bool has_octaves(const io::Dataset& dataset, const RecognitionParameters& parameters) {
+bool has_octaves(const io::Dataset& dataset) {
   try {
     const SurfaceParameters made = parameters_from_json(dataset.header().parameters_json);
     SurfaceParameters wanted = made;
@@ -133,7 +147,7 @@ bool has_octaves(const io::Dataset& dataset, const RecognitionParameters& parame
     wanted.evolution.rescale = made.evolution.rescale;  // octaves are never rescaled
     wanted.evolution.principal = made.evolution.principal;
     wanted.features = {};
-    return to_json(made) == to_json(wanted) && dataset.level_count() >= parameters.levels;
+    return to_json(made) == to_json(wanted);
   } catch (const std::runtime_error&) {
     return false;
   }
@@ -156,6 +170,12 @@ Triangles triangles_of(const std::vector<std::int64_t>& corners) {
 
 }  // namespace
 
+RecognitionParameters scene_parameters(const RecognitionParameters& of_models) {
+  RecognitionParameters parameters = of_models;
+  parameters.samples = 5 * of_models.samples;
+  return parameters;
+}
+
 kernels::RecognitionModel recognition_model(const kernels::BuiltSurface& built,
                                             const RecognitionParameters& parameters,
                                             const engine::RunContext& context) {
@@ -175,7 +195,9 @@ kernels::RecognitionModel recognition_model(const io::Dataset& dataset,
   model.origin = {origin[0], origin[1], origin[2]};
   const std::vector<Vector3f> points = vectors_of(dataset.read_floats(0, "points"));
   const Triangles triangles = triangles_of(dataset.read_integers(0, "triangles"));
-  if (!has_octaves(dataset, parameters)) {
+  measure(points, model);
+  const int levels = levels_of(dataset.level(0).scale, model.diagonal, parameters);
+  if (!has_octaves(dataset) || dataset.level_count() < levels) {
     kernels::TriangleMesh mesh;
     for (const Vector3f& p : points) mesh.points.push_back(p.cast<double>());
     mesh.triangles = triangles;
@@ -184,11 +206,11 @@ kernels::RecognitionModel recognition_model(const io::Dataset& dataset,
     evolve(built.surface, parameters, context, model);
     return model;
   }
-  measure(points, model);
   model.samples =
       kernels::sample_surface(points, triangles, vectors_of(dataset.read_floats(0, "normals")),
                               samples_of(triangles, parameters));
-  for (int level = 0; level < parameters.levels; ++level)
+  kernels::mark_rim(points, triangles, model.samples);
+  for (int level = 0; level < levels; ++level)
     add_level(
         level, dataset.level(level).scale, parameters,
         [&](FeatureKind kind) { return dataset.read_features(level, kind); }, model.features);

@@ -13,7 +13,13 @@ struct RecognitionParameters {
   int most_features = 400;  ///< of each level and kind, those that stand out most
   bool torsion = false;     ///< maxima of torsion as well
   int samples = 4000;       ///< of the surface, at most
+  /// Fine scans have more levels, until sigma is this share of the diagonal: what another scan of
+  /// the object shows at its first level must be among them, however much coarser that is.
+  double least_reach = 0.015;
 };
+
+/// For a scene, of which a model may be a small part.
+RecognitionParameters scene_parameters(const RecognitionParameters& of_models);
 
 /// Features on octave levels, without rescaling, and samples of a built surface. The surface need
 /// not be ordered.

@@ -102,8 +102,9 @@ io::EncodedFields encode_fields(const LevelFields& fields, const kernels::LevelF
     encoder.add(io::array_of(std::span(fields.principal_direction_2), order),
                 principal.direction_2);
   }
+  const io::FeatureTables tables = io::tables_of(features);
   io::for_each_array(
-      features, encoded.features,
+      tables, encoded.features,
       [&](const io::ArrayView& view, io::EncodedArray& target) { encoder.add(view, target); });
   encoder.run();
   return encoded;
@@ -182,7 +183,7 @@ LevelTotals write_levels(EvolvingSurface& surface, const SurfaceParameters& para
           if (level.connectivity) writer.write_connectivity(*level.connectivity);
           writer.write_level(level.attributes, level.encoded);
           totals.remeshed += level.attributes.remeshed;
-          totals.feature_counts.push_back(io::counts_of(level.encoded.features).total());
+          totals.feature_counts.push_back(level.encoded.features.counts.total());
           level.connectivity.reset();
           level.encoded = {};
         },

@@ -20,7 +20,7 @@ struct ThesisRecognitionOptions {
   int level = 1;           ///< of models and scene; the thesis picks one for each (5.8)
   double survivors = 0.6;  ///< of the best score: models with less are not verified. Between 0.6
                            ///< and 0.7 in the tables of 6.4
-  kernels::ClusterOptions clusters;
+  kernels::PoseTolerance clusters;
 };
 
 /// What the thesis' tables say of a model.

@@ -242,14 +242,16 @@ class InfoTest(SemigeoTest):
         with h5py.File(self.dataset("sphere.ply"), "r") as file:
             for k, level in enumerate(document["levels"]):
                 group = file[f"levels/{k:03d}"]
+                names = ("gaussian", "mean", "gaussian_torsion", "mean_torsion")
+                kinds = list(group["features"]["kind"])
                 self.assertEqual(level["features"],
-                                 {name: len(table) for name, table in group["features"].items()})
+                                 {name: kinds.count(i) for i, name in enumerate(names)})
                 self.assertEqual(sum(level["features"].values()),
                                  document["selection"]["feature_counts"][k])
                 self.assertEqual(level["contours"],
-                                 {name: {"count": len(contours["closed"]),
-                                         "length": contours.attrs["length"]}
-                                  for name, contours in group["contours"].items()})
+                                 {name: {"count": list(group["contours"]["kind"]).count(i),
+                                         "length": group.attrs["contour_lengths"][i]}
+                                  for i, name in enumerate(names[:2])})
             self.assertEqual(document["selection"]["level"], file["selection"].attrs["level"])
             self.assertEqual(document["selection"]["smoothed"], list(file["selection/smoothed"]))
 

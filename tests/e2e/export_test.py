@@ -113,7 +113,8 @@ class ExportTest(SemigeoTest):
             for choice in (*FEATURES, "all"):
                 kinds = FEATURES if choice == "all" else (choice,)
                 with h5py.File(self.dataset("s.ply"), "r") as file:
-                    wanted = [file[f"levels/{level:03d}/features/{kind}"][...] for kind in kinds]
+                    table = file[f"levels/{level:03d}/features"][...]
+                    wanted = [table[table["kind"] == FEATURES.index(kind)] for kind in kinds]
                     origin = file.attrs["origin"]
                 numbers = np.repeat([FEATURES.index(kind) for kind in kinds],
                                     [len(table) for table in wanted])
@@ -143,19 +144,23 @@ class ExportTest(SemigeoTest):
         self.export(1e6)
         for level, kind in ((0, "gaussian"), (2, "mean")):
             with h5py.File(self.dataset("s.ply"), "r") as file:
-                wanted = {name: array[...] for name, array in
-                          file[f"levels/{level:03d}/contours/{kind}"].items()}
-                positions = wanted["points"] + file.attrs["origin"]
+                group = file[f"levels/{level:03d}"]
+                contours = group["contours"][...]
+                contours = contours[contours["kind"] == FEATURES.index(kind)]
+                offsets = np.append(0, np.cumsum(contours["count"]))
+                first = contours["first"][0] if len(contours) else 0
+                wanted = group["contour_points"][first:first + offsets[-1]]
+                positions = wanted[:, :3] + file.attrs["origin"]
             arguments = (self.dataset("s.ply"), "--level", level, "--contours", kind)
             for name in ("c.ply", "c.csv"):
                 self.semigeo("export", *arguments, "-o", self.folder / name)
             points, edges = read_points(self.folder / "c.ply")
             columns = read_csv(self.folder / "c.csv")
             self.assertEqual(tuple(columns), points.dtype.names)
-            offsets, closed = wanted["offsets"], wanted["closed"]
+            closed = contours["closed"]
             np.testing.assert_array_equal(
                 np.stack([points[axis] for axis in "xyz"], axis=1), positions)
-            np.testing.assert_array_equal(points["torsion"], wanted["torsion"])
+            np.testing.assert_array_equal(points["torsion"], wanted[:, 3])
             np.testing.assert_array_equal(points["contour"],
                                           np.repeat(np.arange(len(closed)), np.diff(offsets)))
             np.testing.assert_array_equal(points["closed"], np.repeat(closed, np.diff(offsets)))

@@ -131,7 +131,7 @@ TEST_P(ChunkCodec, EmptyArrayHasNoChunks) {
 }
 
 TEST_P(ChunkCodec, NoticesEveryChangedByte) {
-  const std::vector<float> values = noisy_floats(500);
+  const std::vector<float> values = noisy_floats(1500);
   const EncodedArray array = encode_array(array_of(values), GetParam());
   std::vector<std::byte> bytes = array.chunks[0].bytes;
   std::vector<std::byte> rows(static_cast<std::size_t>(array.shape.chunk_bytes()));
@@ -144,7 +144,7 @@ TEST_P(ChunkCodec, NoticesEveryChangedByte) {
 }
 
 TEST_P(ChunkCodec, RefusesTruncatedChunks) {
-  const std::vector<float> values = noisy_floats(100);
+  const std::vector<float> values = noisy_floats(1200);
   const EncodedArray array = encode_array(array_of(values), GetParam());
   const std::span<const std::byte> bytes(array.chunks[0].bytes);
   std::vector<std::byte> rows(static_cast<std::size_t>(array.shape.chunk_bytes()));
@@ -185,6 +185,20 @@ TEST(ChunkCodecDeflate, PaddingIsZeroAndNotHashed) {
   EXPECT_TRUE(std::all_of(rows.begin() + 4464 * 4, rows.end(),
                           [](std::byte b) { return b == std::byte{0}; }));
   EXPECT_EQ(array.chunks[1].raw_xxh3, xxh3_64(std::span(rows).first(4464 * 4)));
+}
+
+TEST(ChunkCodecShape, SmallArraysAreCompact) {
+  for (const Compression compression : {Compression::none, Compression::deflate}) {
+    const EncodedArray small = encode_array(array_of(noisy_floats(1024)), compression);
+    EXPECT_TRUE(small.shape.compact);
+    EXPECT_EQ(small.shape.chunk_count(), 1);
+    expect_stored(small, noisy_floats(1024));
+    std::vector<std::byte> rows(4096);
+    EXPECT_FALSE(decode_chunk(small.shape, std::span(small.chunks[0].bytes).first(4095), 0, rows));
+    const EncodedArray large = encode_array(array_of(noisy_floats(1025)), compression);
+    EXPECT_FALSE(large.shape.compact);
+    expect_stored(large, noisy_floats(1025));
+  }
 }
 
 TEST(ChunkCodecShape, ChunksHaveAQuarterMebibyte) {

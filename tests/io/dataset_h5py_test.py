@@ -32,8 +32,9 @@ def expected_level(level, changing):
 
 FEATURE = np.dtype([("vertex", "<i8"), ("value", "<f4"), ("prominence", "<f4"),
                     ("position", "<f4", 3), ("initial_position", "<f4", 3), ("normal", "<f4", 3),
-                    ("scale_free_gaussian", "<f4"), ("scale_free_mean", "<f4")])
-KINDS = ("gaussian", "mean", "gaussian_torsion", "mean_torsion")
+                    ("scale_free_gaussian", "<f4"), ("scale_free_mean", "<f4"),
+                    ("kind", "<i4"), ("contour_point", "<i8")])
+CONTOUR = np.dtype([("first", "<i8"), ("count", "<i8"), ("kind", "<i4"), ("closed", "<i4")])
 
 
 def expected_features(level, kind):
@@ -44,21 +45,28 @@ def expected_features(level, kind):
     rows["initial_position"][:, 0], rows["initial_position"][:, 1:] = i, (kind, -1)
     rows["normal"] = (0, level, 1)
     rows["scale_free_gaussian"], rows["scale_free_mean"] = 0.25 * i, -0.25 * i
+    rows["kind"], rows["contour_point"] = kind, -1
+    if kind >= 2:
+        rows["contour_point"] = i
+    if kind == 3:
+        rows["contour_point"] += len(expected_contours(level, 0)[1])
     return rows
 
 
 def expected_contours(level, kind):
-    count = level * (2 + kind)
-    offsets = np.cumsum([0] + [3 + i for i in range(count)], dtype="i8")
-    p = np.arange(offsets[-1])
-    points = np.stack([0.5 * p, np.full(len(p), kind), np.full(len(p), level)], axis=1)
-    return {
-        "points": points.astype("f4"),
-        "torsion": (p - kind).astype("f4"),
-        "offsets": offsets,
-        "closed": (np.arange(count) % 2).astype("u1"),
-        "maxima": np.arange(level * (7 + kind), dtype="i8"),
-    }
+    """Contours, and their points; of H = 0 they follow those of K = 0."""
+    contours = np.zeros(level * (2 + kind), CONTOUR)
+    i = np.arange(len(contours))
+    contours["count"], contours["kind"], contours["closed"] = 3 + i, kind, i % 2
+    before = len(expected_contours(level, 0)[1]) if kind == 1 else 0
+    contours["first"] = before + np.cumsum(contours["count"]) - contours["count"]
+    p = np.arange(contours["count"].sum())
+    points = np.stack([0.5 * p, np.full(len(p), kind), np.full(len(p), level), p - kind], axis=1)
+    return contours, points.astype("f4")
+
+
+def is_compact(array):
+    return array.id.get_create_plist().get_layout() == h5py.h5d.COMPACT
 
 
 def check_same(found, wanted, what):
@@ -70,8 +78,13 @@ def check_levels(file, levels, compression):
     assert sorted(file["levels"]) == ["000", "001", "002"]
     for k, wanted in enumerate(levels):
         group = file[f"levels/{k:03d}"]
-        assert sorted(group) == sorted([*wanted, "features", "contours"])
+        assert sorted(group) == sorted([*wanted, "features", "contours", "contour_points"])
         attributes = dict(group.attrs)
+        for name, values in (("feature_counts", [k * (5 + kind) for kind in range(4)]),
+                             ("contour_counts", [2 * k, 3 * k]),
+                             ("contour_lengths", [2.5 * len(expected_contours(k, kind)[1])
+                                                  for kind in range(2)])):
+            assert list(attributes.pop(name)) == values, name
         assert attributes == {"iteration": k, "step": 0.5, "scale": 0.25 + k,
                               "mean_edge_length": 1.5, "parts": 50, "shortest_side": 0.125,
                               "split": 1, "collapsed": 2, "torn": 3, "inserted": 4, "removed": 5,
@@ -83,21 +96,17 @@ def check_levels(file, levels, compression):
 
 
 def check_features(file, compression):
-    assert FEATURE.itemsize == 60
+    assert FEATURE.itemsize == 72 and CONTOUR.itemsize == 24
     for k in range(LEVELS):
-        features, contours = file[f"levels/{k:03d}/features"], file[f"levels/{k:03d}/contours"]
-        assert sorted(features) == sorted(KINDS) and sorted(contours) == ["gaussian", "mean"]
-        for kind, name in enumerate(KINDS):
-            check_same(features[name], expected_features(k, kind), f"{k} {name}")
-            assert features[name].shuffle == (compression == "deflate" and k > 0)
-        for kind, name in enumerate(("gaussian", "mean")):
-            wanted = expected_contours(k, kind)
-            assert sorted(contours[name]) == sorted(wanted)
-            for array, values in wanted.items():
-                check_same(contours[name][array], values, f"{k} {name} {array}")
-            assert dict(contours[name].attrs) == {"count": k * (2 + kind),
-                                                  "length": 2.5 * wanted["offsets"][-1]}
-    np.testing.assert_array_equal(file["levels/002/features/mean"]["value"], np.arange(12) - 1)
+        level = file[f"levels/{k:03d}"]
+        contours, points = zip(*(expected_contours(k, kind) for kind in range(2)))
+        wanted = {"features": np.concatenate([expected_features(k, kind) for kind in range(4)]),
+                  "contours": np.concatenate(contours), "contour_points": np.concatenate(points)}
+        for name, rows in wanted.items():
+            check_same(level[name], rows, f"{k} {name}")
+            assert is_compact(level[name]) == (k > 0), (k, name)
+    features = file["levels/002/features"][...]
+    np.testing.assert_array_equal(features["value"][features["kind"] == 1], np.arange(12) - 1)
 
 
 def check_selection(file, changing):
@@ -142,6 +151,8 @@ def check_vtkhdf(file, levels, changing):
         start = steps["CellOffsets"][k][2] + part
         check_same(vtk["Polygons/Offsets"][start:start + cells + 1],
                    3 * np.arange(cells + 1, dtype="i8"), "Offsets")
+    for table in (steps["Values"], steps["PointOffsets"], vtk["Polygons/NumberOfCells"]):
+        assert is_compact(table)
     assert vtk["Points"].is_virtual and vtk["Polygons/Connectivity"].is_virtual
     assert len(vtk["NumberOfPoints"]) == (LEVELS if changing else 1)
     # Reading across the border of two sources.
@@ -167,7 +178,7 @@ def check_header(file, digest):
     assert text["job_key"] == "key-of-the-job" and text["length_unit"] == "mm"
     assert text["parameters"] == '{"levels": 3}'
     assert text["repairs"] == '{"duplicate_faces": 2}'
-    assert file.attrs["complete"] == 1 and file.attrs["format_version"] == 3
+    assert file.attrs["complete"] == 1 and file.attrs["format_version"] == 4
     assert list(file.attrs["origin"]) == [1000.5, -2, 3]
 
 

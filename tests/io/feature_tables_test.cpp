@@ -5,6 +5,7 @@
 #include <fstream>
 #include <functional>
 #include <stdexcept>
+#include <tuple>
 
 #include "io/array_reader.hpp"
 #include "io/error.hpp"
@@ -29,10 +30,10 @@ LevelFeatures sample() {
   return tests::sample_level({.vertices = kVertices, .triangles = 1}, 2).features;
 }
 
-class FeatureTables : public ::testing::Test {
+class FeatureTablesTest : public ::testing::Test {
  protected:
   void write(const LevelFeatures& features, Compression compression = Compression::deflate) {
-    write(encode_features(features, compression));
+    write(encode_features(tables_of(features), compression));
   }
   void write(const EncodedFeatures& encoded, const std::function<void(Hdf5File&)>& change = {}) {
     DigestedFile file(Hdf5File::create(path_));
@@ -61,13 +62,13 @@ class FeatureTables : public ::testing::Test {
     EXPECT_NE(found.find(std::string(kLevel) + "/" + place + ": "), std::string::npos) << found;
     EXPECT_NE(found.find(problem), std::string::npos) << found;
   }
-  /// What is refused when one value of the contours H = 0 is wrong.
-  void expect_refused(const std::function<void(kernels::SampledContours&)>& change,
-                      const std::string& place, const std::string& problem) {
-    LevelFeatures features = sample();
-    change(features.contours[1]);
-    write(features);
-    expect_refused("contours/mean/" + place, problem);
+  /// What is refused when one value of the tables is wrong.
+  void expect_refused(const std::function<void(FeatureTables&)>& change, const std::string& place,
+                      const std::string& problem) {
+    FeatureTables tables = tables_of(sample());
+    change(tables);
+    write(encode_features(tables, Compression::none));
+    expect_refused(place, problem);
   }
 
   tests::TemporaryFolder folder_;
@@ -75,7 +76,7 @@ class FeatureTables : public ::testing::Test {
   std::string digest_;
 };
 
-TEST_F(FeatureTables, EverythingComesBack) {
+TEST_F(FeatureTablesTest, EverythingComesBack) {
   LevelFeatures many = sample();
   for (int i = 0; i < 10'000; ++i) many.of_kind[0].push_back(many.of_kind[1][i % 7]);
   LevelFeatures none;
@@ -100,33 +101,39 @@ TEST_F(FeatureTables, EverythingComesBack) {
     }
 }
 
-// Memory rows have 64 bytes, stored ones 60: HDF5's own filters must find the same ones.
-TEST_F(FeatureTables, OtherReadersSeePackedRecords) {
+TEST_F(FeatureTablesTest, OtherReadersSeeTheSameRecords) {
   LevelFeatures features = sample();
   for (int i = 0; i < 10'000; ++i) features.of_kind[1].push_back(features.of_kind[0][i % 9]);
+  const std::size_t rows = 10'000 + 10 + 12 + 14 + 16;
   for (const Compression compression : {Compression::none, Compression::deflate}) {
     write(features, compression);
     const Hdf5File file = Hdf5File::open(path_);
-    EXPECT_GT(file.open_array("/level/features/mean").shape().chunk_count(), 1);
-    const std::vector<std::byte> ours =
-        read_records(file, "/level/features/mean", ElementType::feature);
-    EXPECT_EQ(ours.size(), 60 * features.of_kind[1].size());
-    EXPECT_EQ(ours, file.read_through_library("/level/features/mean"));
+    EXPECT_GT(file.open_array("/level/features").shape().chunk_count(), 1);
+    EXPECT_TRUE(file.shape_of("/level/contours").compact);
+    for (const auto& [table, type, size] :
+         {std::tuple("/level/features", ElementType::feature, 72 * rows),
+          std::tuple("/level/contours", ElementType::contour, std::size_t{24 * 10})}) {
+      const std::vector<std::byte> ours = read_records(file, table, type);
+      EXPECT_EQ(ours.size(), size);
+      EXPECT_EQ(ours, file.read_through_library(table));
+    }
   }
 }
 
-TEST_F(FeatureTables, TheTypeOfARecordHasItsMembers) {
-  std::string text;
-  for (const RecordMember& member : kFeatureMembers) {
-    text += (text.empty() ? "{" : ",") + std::string(member.name) + ":" +
-            std::string(name_of(member.type));
-    if (member.columns > 1) text += "[" + std::to_string(member.columns) + "]";
+TEST_F(FeatureTablesTest, TheTypeOfARecordHasItsMembers) {
+  for (const ElementType type : {ElementType::feature, ElementType::contour}) {
+    std::string text;
+    for (const RecordMember& member : members_of(type)) {
+      text += (text.empty() ? "{" : ",") + std::string(member.name) + ":" +
+              std::string(name_of(member.type));
+      if (member.columns > 1) text += "[" + std::to_string(member.columns) + "]";
+    }
+    EXPECT_EQ(name_of(type), text + "}");
   }
-  EXPECT_EQ(name_of(ElementType::feature), text + "}");
 }
 
-TEST_F(FeatureTables, TheDigestHasALineWithThatType) {
-  const std::vector<Feature> features = sample().of_kind[0];
+TEST_F(FeatureTablesTest, TheDigestHasALineWithThatType) {
+  const std::vector<FeatureRow> features = tables_of(sample()).features;
   const EncodedArray encoded = encode_array(array_of(features), Compression::deflate);
   DigestedFile file(Hdf5File::create(path_));
   file.write_array("/t", encoded);
@@ -139,29 +146,38 @@ TEST_F(FeatureTables, TheDigestHasALineWithThatType) {
   EXPECT_EQ(file.digest().hex(), xxh3_of_file(folder_ / "lines"));
 }
 
-TEST_F(FeatureTables, VerticesMustExist) {
-  for (const std::int64_t vertex : {std::int64_t{-1}, kVertices}) {
-    LevelFeatures features = sample();
-    features.of_kind[3][5].vertex = vertex;
-    write(features);
-    expect_refused("features/mean_torsion",
-                   "feature 5 is at vertex " + std::to_string(vertex) + " of 40");
-  }
+// Of 10, 12, 14 and 16 features row 41 is the sixth of mean_torsion.
+TEST_F(FeatureTablesTest, VerticesMustExist) {
+  for (const std::int64_t vertex : {std::int64_t{-1}, kVertices})
+    expect_refused([&](auto& t) { t.features[41].vertex = vertex; }, "features",
+                   "row 41 is at vertex " + std::to_string(vertex) + " of 40");
 }
 
-TEST_F(FeatureTables, ContoursMustFollowOneAnother) {
-  expect_refused([](auto& c) { c.offsets.front() = 1; }, "offsets", "does not begin at point 0");
-  expect_refused([](auto& c) { c.offsets[2] = c.offsets[1]; }, "offsets",
-                 "contour 1 has no points");
-  expect_refused([](auto& c) { c.offsets[3] = 1000; }, "offsets", "contour 3 has no points");
-  expect_refused([](auto& c) { ++c.offsets.back(); }, "offsets", "ends at point 34 of 33");
-  expect_refused([](auto& c) { --c.offsets.back(); }, "offsets", "ends at point 32 of 33");
+TEST_F(FeatureTablesTest, RowsMustBeOfTheKindThatIsCounted) {
+  expect_refused([](auto& t) { t.features[10].kind = 0; }, "features",
+                 "row 10 is of kind 0 among those of kind 1");
+  expect_refused([](auto& t) { t.contours[3].kind = 1; }, "contours",
+                 "row 3 is of kind 1 among those of kind 0");
 }
 
-TEST_F(FeatureTables, MarksAndMaximaMustMeanSomething) {
-  expect_refused([](auto& c) { c.closed[2] = 2; }, "closed", "neither 0 nor 1");
-  expect_refused([](auto& c) { c.maxima[0] = -1; }, "maxima", "refers to point -1 of 33");
-  expect_refused([](auto& c) { c.maxima[4] = 33; }, "maxima", "refers to point 33 of 33");
+// K = 0 has 4 contours with 18 points, H = 0 has 6 with 33.
+TEST_F(FeatureTablesTest, ContoursMustFollowOneAnother) {
+  expect_refused([](auto& t) { t.contours[0].first = 1; }, "contours",
+                 "contour 0 begins at point 1 instead of 0");
+  expect_refused([](auto& t) { --t.contours[4].first; }, "contours",
+                 "contour 4 begins at point 17 instead of 18");
+  expect_refused([](auto& t) { t.contours[5].count = 0; }, "contours", "contour 5 has 0 points");
+  expect_refused([](auto& t) { ++t.contours[9].count; }, "contours", "contour 9 has 9 points of 8");
+  expect_refused([](auto& t) { --t.contours[9].count; }, "contours", "end at point 50 of 51");
+}
+
+TEST_F(FeatureTablesTest, MarksAndMaximaMustMeanSomething) {
+  expect_refused([](auto& t) { t.contours[2].closed = 2; }, "contours", "marked neither 0 nor 1");
+  expect_refused([](auto& t) { t.features[22].contour_point = -1; }, "features",
+                 "row 22 is at point -1, outside its contours");
+  expect_refused([](auto& t) { t.features[22].contour_point = 18; }, "features", "point 18,");
+  expect_refused([](auto& t) { t.features[36].contour_point = 17; }, "features", "point 17,");
+  expect_refused([](auto& t) { t.features[36].contour_point = 51; }, "features", "point 51,");
 }
 
 // Removes an object, or puts the array /other in its place.
@@ -172,53 +188,59 @@ void replace(const std::filesystem::path& path, const std::string& name, bool by
     ASSERT_GE(H5Lmove(file.get(), "/other", file.get(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), 0);
 }
 
-TEST_F(FeatureTables, ShapesAndTypesMustFit) {
-  const EncodedFeatures right = encode_features(sample(), Compression::none);
-  const auto floats = [](std::size_t rows) {
-    return encode_array(array_of(std::vector<float>(rows)), Compression::none);
-  };
-  const auto integers = [](std::size_t rows) {
-    return encode_array(array_of(std::vector<std::int64_t>(rows)), Compression::none);
+TEST_F(FeatureTablesTest, ShapesAndTypesMustFit) {
+  const FeatureTables tables = tables_of(sample());
+  const EncodedFeatures right = encode_features(tables, Compression::none);
+  const auto encoded = [](const auto& rows) {
+    return encode_array(array_of(std::span(rows)), Compression::none);
   };
   const std::pair<std::string, EncodedArray> wrong[] = {
-      {"features/gaussian", floats(12)},          {"contours/mean/points", floats(33)},
-      {"contours/mean/points", integers(33)},     {"contours/mean/torsion", floats(32)},
-      {"contours/mean/torsion", integers(33)},    {"contours/mean/offsets", integers(6)},
-      {"contours/mean/offsets", floats(7)},       {"contours/mean/closed", integers(6)},
-      {"contours/gaussian/maxima", integers(13)}, {"contours/gaussian/maxima", floats(14)}};
+      {"features", encoded(std::vector<float>(52))},
+      {"features", encoded(tables.contours)},
+      {"features", encoded(std::span(tables.features).first(51))},
+      {"contours", encoded(tables.features)},
+      {"contours", encoded(std::span(tables.contours).first(9))},
+      {"contour_points", encoded(std::vector<float>(51))},
+      {"contour_points", encoded(std::vector<Eigen::Vector3f>(51))}};
   write(right);
   EXPECT_EQ(failure(), "");
   for (const auto& [name, array] : wrong) {
     write(right, [&](Hdf5File& file) { file.write_array("/other", array); });
     replace(path_, std::string(kLevel) + "/" + name, true);
-    expect_refused(name, name.starts_with("features") ? "no table" : "type or shape");
+    expect_refused(name, "has not the ");
   }
 }
 
-TEST_F(FeatureTables, ArraysMayNotBeMissing) {
-  const EncodedFeatures right = encode_features(sample(), Compression::none);
-  for (const std::string name :
-       {"features/mean", "contours/gaussian/points", "contours/mean/maxima", "contours/mean"}) {
+TEST_F(FeatureTablesTest, TablesMayNotBeMissing) {
+  const EncodedFeatures right = encode_features(tables_of(sample()), Compression::none);
+  for (const std::string name : {"features", "contours", "contour_points"}) {
     write(right);
     replace(path_, kLevel + ("/" + name), false);
     EXPECT_NE(failure().find(kLevel + ("/" + name)), std::string::npos) << failure();
   }
 }
 
-TEST_F(FeatureTables, TheCountMustBeThatOfTheMarks) {
-  write(encode_features(sample(), Compression::none));
-  {
-    const Hdf5Handle file(H5Fopen(path_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
-    const Hdf5Handle group(H5Oopen(file.get(), "/level/contours/mean", H5P_DEFAULT), H5Oclose);
-    const Hdf5Handle count(H5Aopen(group.get(), "count", H5P_DEFAULT), H5Aclose);
-    const std::int64_t five = 5;
-    ASSERT_GE(H5Awrite(count.get(), H5T_STD_I64LE, &five), 0);
+TEST_F(FeatureTablesTest, TheCountsMustBeThoseOfTheTables) {
+  using Counts = std::vector<std::int64_t>;
+  const std::tuple<const char*, Counts, const char*> wrong[] = {
+      {"feature_counts", {10, 12, 14, 17}, "/features: has not the rows"},
+      {"feature_counts", {10, 12, 14, 15}, "/features: has not the rows"},
+      {"feature_counts", {-10, 32, 14, 16}, "/features: has not the rows"},
+      {"contour_counts", {4, 7}, "/contours: has not the rows"}};
+  for (const auto& [name, counts, problem] : wrong) {
+    write(encode_features(tables_of(sample()), Compression::none));
+    {
+      const Hdf5Handle file(H5Fopen(path_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+      const Hdf5Handle group(H5Oopen(file.get(), kLevel, H5P_DEFAULT), H5Oclose);
+      const Hdf5Handle attribute(H5Aopen(group.get(), name, H5P_DEFAULT), H5Aclose);
+      ASSERT_GE(H5Awrite(attribute.get(), H5T_STD_I64LE, counts.data()), 0);
+    }
+    EXPECT_NE(failure().find(problem), std::string::npos) << failure();
   }
-  expect_refused("contours/mean/offsets", "type or shape");
 }
 
 // Records of others: another order, a gap, a member less.
-TEST_F(FeatureTables, OtherRecordsAreRefused) {
+TEST_F(FeatureTablesTest, OtherRecordsAreRefused) {
   const std::function<void(hid_t)> layouts[] = {
       [](hid_t type) { H5Tinsert(type, "vertex", 0, H5T_STD_I64LE); },
       [](hid_t type) {
@@ -254,19 +276,21 @@ TEST_F(FeatureTables, OtherRecordsAreRefused) {
   }
 }
 
-TEST_F(FeatureTables, TheWriterRefusesWhatDoesNotFit) {
-  const EncodedFeatures right = encode_features(sample(), Compression::none);
-  const EncodedArray nothing;
-  std::vector<EncodedFeatures> wrong(7, right);
-  wrong[0].of_kind[0] = nothing;
-  wrong[1].of_kind[3] = right.of_kind[2];  // 14 features for 16 maxima
-  wrong[2].contours[0].points = right.contours[1].points;
-  wrong[3].contours[0].torsion = right.contours[1].torsion;
-  wrong[4].contours[0].offsets = right.contours[1].offsets;
-  wrong[5].contours[0].closed = right.contours[1].closed;
-  wrong[6].contours[0].maxima = right.contours[1].maxima;
+TEST_F(FeatureTablesTest, TheWriterRefusesWhatDoesNotFit) {
+  const EncodedFeatures right = encode_features(tables_of(sample()), Compression::none);
+  std::vector<EncodedFeatures> wrong(6, right);
+  wrong[0].features = {};
+  wrong[1].contours = {};
+  wrong[2].contour_points = {};
+  wrong[2].contour_points.shape.columns = 3;
+  wrong[3].counts.of_kind[2] += 1;
+  wrong[4].counts.contours[0] += 1;
+  std::swap(wrong[5].features, wrong[5].contours);
   for (const EncodedFeatures& features : wrong)
     EXPECT_THROW(write(features), std::invalid_argument);
+  LevelFeatures features = sample();
+  features.of_kind[3].pop_back();  // 15 features for 16 maxima
+  EXPECT_THROW(tables_of(features), std::invalid_argument);
 }
 
 }  // namespace

@@ -94,6 +94,40 @@ TEST(Hdf5, ListsGroupsArraysAndLinks) {
   EXPECT_FALSE(read.has("/x/y/z"));
 }
 
+// Small groups lie in their object header, others in a heap with an index.
+TEST(Hdf5, GroupsMayHaveManyEntriesAndAttributes) {
+  const tests::TemporaryFolder folder;
+  Hdf5File file = Hdf5File::create(folder / "a.h5");
+  file.create_group("/g");
+  for (std::int64_t i = 0; i < 200; ++i) {
+    file.create_group("/g/" + std::to_string(i));
+    file.write_attribute("/g", std::to_string(i), i);
+  }
+  file.close();
+  const Hdf5File read = Hdf5File::open(folder / "a.h5");
+  EXPECT_EQ(read.links("/g").size(), 200U);
+  EXPECT_EQ(read.read_attribute_as<std::int64_t>("/g", "123"), 123);
+  EXPECT_EQ(read.attributes("/g").size(), 200U);
+  EXPECT_EQ(read.read_attribute_as<std::int64_t>("/g", "123"), 123);
+  EXPECT_FALSE(read.has_attribute("/g", "200"));
+  EXPECT_TRUE(read.has("/g/199"));
+  EXPECT_FALSE(read.has("/g/200"));
+  EXPECT_FALSE(read.has("/h/199"));
+}
+
+TEST(Hdf5, SmallArraysAreReadOnce) {
+  const tests::TemporaryFolder folder;
+  Hdf5File file = Hdf5File::create(folder / "a.h5");
+  const EncodedArray array = encode({1, 2, 3});
+  file.write_array("/a", array);
+  file.close();
+  const Hdf5File read = Hdf5File::open(folder / "a.h5");
+  EXPECT_EQ(read.shape_of("/a"), array.shape);
+  EXPECT_EQ(read_floats(read, "/a", 1), (std::vector<float>{1, 2, 3}));
+  std::ofstream(folder / "a.h5") << "gone";
+  EXPECT_EQ(read_floats(read, "/a", 1), (std::vector<float>{1, 2, 3}));
+}
+
 TEST(Hdf5, VirtualArraysShowTheirSourcesOneAfterTheOther) {
   const tests::TemporaryFolder folder;
   const std::vector<Eigen::Vector3f> points = {{1, 2, 3}, {4, 5, 6}};
@@ -138,6 +172,34 @@ TEST(Hdf5, EveryChunkMustBeThere) {
   array.chunks.pop_back();
   Hdf5File file = Hdf5File::create(folder / "a.h5");
   EXPECT_THROW(file.write_array("/a", array), std::invalid_argument);
+}
+
+TEST(Hdf5, ArraysGrowBesideOneAnotherWhetherCompactOrNot) {
+  const tests::TemporaryFolder folder;
+  const std::vector<float> values(100000, 0.5F);
+  const EncodedArray large = encode(values);
+  const EncodedArray small = encode({1, 2, 3});
+  ASSERT_TRUE(!large.shape.compact && large.chunks.size() == 2 && small.shape.compact);
+  Hdf5File file = Hdf5File::create(folder / "a.h5");
+  Hdf5File::Growing chunked = file.begin_array("/chunked", large.shape);
+  Hdf5File::Growing compact = file.begin_array("/compact", small.shape);
+  chunked.write_chunk(large.chunks[0]);
+  EXPECT_THROW(compact.close(), std::invalid_argument) << "it has no rows";
+  compact.write_chunk(small.chunks[0]);
+  EXPECT_THROW(compact.write_chunk(small.chunks[0]), std::invalid_argument);
+  chunked.write_chunk(large.chunks[1]);
+  compact.close();
+  chunked.close();
+  EXPECT_EQ(read_floats(file, "/compact", 1), (std::vector<float>{1, 2, 3}));
+  EXPECT_EQ(read_floats(file, "/chunked", 1), values);
+  Hdf5File::Growing torn = file.begin_array("/torn", small.shape);
+  EXPECT_THROW(torn.write_chunk({.bytes = std::vector<std::byte>(8)}), std::invalid_argument);
+  file.close();
+
+  const Hdf5File read = Hdf5File::open(folder / "a.h5");
+  EXPECT_TRUE(read.shape_of("/compact").compact);
+  EXPECT_EQ(read_floats(read, "/compact", 1), (std::vector<float>{1, 2, 3}));
+  EXPECT_EQ(read_floats(read, "/chunked", 1), values);
 }
 
 TEST(Hdf5, PromisesWithoutBytesAllocateNothing) {

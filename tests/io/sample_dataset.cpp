@@ -99,7 +99,7 @@ io::EncodedFields encode_fields(const SampleLevel& level, io::Compression compre
           encode(level.gaussian_curvature),
           encode(level.mean_curvature),
           encode(level.patch_completeness),
-          io::encode_features(level.features, compression),
+          io::encode_features(io::tables_of(level.features), compression),
           std::nullopt};
 }
 

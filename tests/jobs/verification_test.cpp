@@ -44,7 +44,7 @@ std::string everything_in(const io::Hdf5File& file, const std::string& group) {
 class VerificationTest : public testing::Test {
  protected:
   VerificationTest() {
-    const fs::path scan = tests::write_obj(folder_ / "scan.obj", shapes::icosphere(0));
+    const fs::path scan = tests::write_obj(folder_ / "scan.obj", shapes::icosphere(3));
     SurfaceJob job;
     job.input = scan;
     job.output = folder_ / "whole.vtkhdf";

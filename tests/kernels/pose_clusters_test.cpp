@@ -48,7 +48,7 @@ TEST(PoseClusters, FindTwoPosesAmongManyOthers) {
   for (int i = 0; i < 2000; ++i) votes.push_back({random_similarity(random), 0.3});
   std::ranges::shuffle(votes, random);
 
-  const auto clusters = pose_clusters(votes, kCentre, kDiagonal, {});
+  const auto clusters = PoseVotes(votes, kCentre, kDiagonal).clusters();
   ASSERT_GE(clusters.size(), 2U);
   EXPECT_NEAR(clusters[0].weight, 40, 1);
   EXPECT_NEAR(clusters[1].weight, 20, 1);
@@ -63,7 +63,7 @@ TEST(PoseClusters, OnePoseIsOneCluster) {
   std::mt19937_64 random(2);
   const Similarity pose = random_similarity(random);
   const auto votes = votes_for(pose, 100, 1, random);
-  const auto clusters = pose_clusters(votes, kCentre, kDiagonal, {});
+  const auto clusters = PoseVotes(votes, kCentre, kDiagonal).clusters();
   ASSERT_FALSE(clusters.empty());
   EXPECT_NEAR(clusters[0].weight, 100, 5);
   for (std::size_t i = 1; i < clusters.size(); ++i) EXPECT_LT(clusters[i].weight, 50);
@@ -72,7 +72,7 @@ TEST(PoseClusters, OnePoseIsOneCluster) {
 TEST(PoseClusters, ReachIsAsSaid) {
   const auto weight_of = [](const Similarity& other) {
     const std::vector<PoseVote> votes = {{{}, 1}, {other, 1}};
-    return pose_clusters(votes, Vector3d::Zero(), kDiagonal, {}).front().weight;
+    return PoseVotes(votes, Vector3d::Zero(), kDiagonal).clusters().front().weight;
   };
   const auto turned = [](double angle) {
     return Similarity{.rotation = Eigen::AngleAxisd(angle, Vector3d::UnitX()).toRotationMatrix()};
@@ -85,12 +85,22 @@ TEST(PoseClusters, ReachIsAsSaid) {
   EXPECT_EQ(weight_of({.translation = Vector3d(0.21, 0, 0)}), 1);
 }
 
+TEST(PoseClusters, SupportIsTheWeightAboutAPose) {
+  std::mt19937_64 random(4);
+  const Similarity pose = random_similarity(random);
+  const auto votes = votes_for(pose, 50, 0.5, random);
+  const PoseVotes all(votes, kCentre, kDiagonal);
+  EXPECT_NEAR(all.support(pose, {}), 25, 1e-4);
+  EXPECT_LT(all.support(pose, {.angle = 0.05}), 20);
+  EXPECT_EQ(all.support(random_similarity(random), {}), 0);
+}
+
 TEST(PoseClusters, AsManyAsWanted) {
   std::mt19937_64 random(3);
   std::vector<PoseVote> votes;
   for (int i = 0; i < 1000; ++i) votes.push_back({random_similarity(random), 1});
-  EXPECT_EQ(pose_clusters(votes, kCentre, kDiagonal, {.most = 7}).size(), 7U);
-  EXPECT_TRUE(pose_clusters({}, kCentre, kDiagonal, {}).empty());
+  EXPECT_EQ(PoseVotes(votes, kCentre, kDiagonal).clusters({.most = 7}).size(), 7U);
+  EXPECT_TRUE(PoseVotes({}, kCentre, kDiagonal).clusters().empty());
 }
 
 }  // namespace

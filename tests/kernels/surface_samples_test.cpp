@@ -64,6 +64,15 @@ TEST(SurfaceSamples, LieOnTheSurfaceWithItsNormals) {
   EXPECT_NEAR(samples.spacing, std::sqrt(4 * M_PI / 1000), 0.01 * samples.spacing);
 }
 
+TEST(SurfaceSamples, AClosedSurfaceHasNoRim) {
+  const TriangleMesh mesh = shapes::icosphere(2);
+  SurfaceSamples samples = samples_of(mesh, 100);
+  std::vector<Vector3f> points;
+  for (const auto& p : mesh.points) points.push_back(p.cast<float>());
+  mark_rim(points, mesh.triangles, samples);
+  EXPECT_TRUE(samples.rim.empty());
+}
+
 TEST(SurfaceSamples, NoAreaNoSamples) {
   EXPECT_TRUE(samples_of({}, 10).points.empty());
   TriangleMesh line;
