@@ -9,6 +9,7 @@
 #include "jobs/stages/evolving_surface.hpp"
 #include "jobs/stages/level_features.hpp"
 #include "jobs/stages/prepare_surface.hpp"
+#include "jobs/stages/recognise_scene.hpp"
 #include "jobs/stages/recognition_features.hpp"
 
 namespace semigeo::jobs {
@@ -33,10 +34,25 @@ SurfaceParameters parameters_from_json(const std::string& text);
 std::string to_json(const RecognitionParameters& parameters);
 RecognitionParameters recognition_parameters_from_json(const std::string& text);
 
+enum class RecognitionMethod {
+  kOverlap,  ///< stages/recognise_scene.hpp
+  kThesis    ///< stages/thesis_recognition.hpp
+};
+
+/// What a recognition depends on besides the scene and the library.
+struct SearchParameters {
+  RecognitionMethod method = RecognitionMethod::kOverlap;
+  double min_score = RecognitionOptions{}.min_score;  ///< below it a model is not in the scene
+};
+
+std::string to_json(const SearchParameters& parameters);
+SearchParameters search_parameters_from_json(const std::string& text);
+
 /// What jobs depend on besides their inputs: each kind on its part.
 struct JobParameters {
   SurfaceParameters surface = {};
   RecognitionParameters recognition = {};
+  SearchParameters search = {};
 };
 
 /// What `semigeo run` was asked to do.

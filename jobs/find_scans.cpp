@@ -76,8 +76,27 @@ io::Error unsearchable(const fs::path& folder, const std::error_code& error) {
   return {folder, "", "cannot be searched for scans: " + error.message(), "check its permissions"};
 }
 
+bool is_dataset(const fs::path& file) {
+  return file.extension() == ".vtkhdf";
+}
+
+/// What is looked for, and where not.
+struct Search {
+  bool datasets = false;  ///< as well as scans
+  std::vector<fs::path> passed_over;
+
+  bool wants(const fs::path& file) const {
+    return io::scan_format(file).has_value() || (datasets && is_dataset(file));
+  }
+  bool enters(const fs::path& folder) const {
+    std::error_code ignored;
+    return std::ranges::none_of(
+        passed_over, [&](const fs::path& other) { return fs::equivalent(folder, other, ignored); });
+  }
+};
+
 /// The scans of one folder, and in `folders` those below it. Returns why it cannot be searched.
-std::error_code list_folder(const fs::path& folder, const fs::path& archive,
+std::error_code list_folder(const fs::path& folder, const Search& search,
                             std::vector<fs::path>& files, std::vector<fs::path>& folders) {
   std::error_code error;
   fs::directory_iterator entry(folder, error);
@@ -85,23 +104,23 @@ std::error_code list_folder(const fs::path& folder, const fs::path& archive,
     std::error_code ignored;
     if (is_hidden(entry->path())) continue;
     if (entry->is_directory(ignored)) {
-      if (!entry->is_symlink(ignored) && !fs::equivalent(entry->path(), archive, ignored))
+      if (!entry->is_symlink(ignored) && search.enters(entry->path()))
         folders.push_back(entry->path());
-    } else if (io::scan_format(entry->path())) {
+    } else if (search.wants(entry->path())) {
       files.push_back(entry->path());
     }
   }
   return error;
 }
 
-void search_folder(const fs::path& top, const fs::path& archive, std::vector<FoundScan>& found) {
+void search_folder(const fs::path& top, const Search& search, std::vector<FoundScan>& found) {
   std::vector<fs::path> files;
   std::vector<fs::path> folders = {top};
   std::vector<FoundScan> unsearched;
   while (!folders.empty()) {
     const fs::path folder = std::move(folders.back());
     folders.pop_back();
-    const std::error_code error = list_folder(folder, archive, files, folders);
+    const std::error_code error = list_folder(folder, search, files, folders);
     if (!error) continue;
     if (folder == top) throw unsearchable(folder, error);
     unsearched.push_back(found_scan(folder, folder.lexically_relative(top)));
@@ -114,31 +133,41 @@ void search_folder(const fs::path& top, const fs::path& archive, std::vector<Fou
   std::ranges::move(unsearched, std::back_inserter(found));
 }
 
-void add_file(const fs::path& file, std::vector<FoundScan>& found) {
-  if (!io::scan_format(file))
+void add_file(const fs::path& file, const Search& search, std::vector<FoundScan>& found) {
+  if (!search.wants(file))
     throw io::Error(file, "", "is not a scan that semigeo reads",
-                    "give .ply, .obj, .off or .stl files, also as .gz, or folders of them");
+                    std::string("give .ply, .obj, .off or .stl files, also as .gz, ") +
+                        (search.datasets ? "datasets (.vtkhdf), " : "") + "or folders of them");
   found.push_back(found_scan(file, file.filename()));
 }
 
-}  // namespace
-
-std::vector<FoundScan> find_scans(const std::vector<fs::path>& inputs, const fs::path& archive) {
+std::vector<FoundScan> find(const std::vector<fs::path>& inputs, const Search& search) {
   std::vector<FoundScan> found;
   for (const fs::path& input : inputs) {
     std::error_code error;
     const fs::file_status status = fs::status(input, error);
     if (!fs::exists(status)) throw io::Error(input, "", "no such file or folder", "check the path");
     if (fs::is_directory(status)) {
-      search_folder(input, archive, found);
+      search_folder(input, search, found);
     } else {
-      add_file(input, found);
+      add_file(input, search, found);
     }
   }
 
   std::set<fs::path> seen;
   std::erase_if(found, [&](const FoundScan& scan) { return !seen.insert(scan.file).second; });
   return found;
+}
+
+}  // namespace
+
+std::vector<FoundScan> find_scans(const std::vector<fs::path>& inputs, const fs::path& archive) {
+  return find(inputs, {.passed_over = {archive}});
+}
+
+std::vector<FoundScan> find_scenes(const std::vector<fs::path>& inputs,
+                                   const std::vector<fs::path>& passed_over) {
+  return find(inputs, {.datasets = true, .passed_over = passed_over});
 }
 
 }  // namespace semigeo::jobs

@@ -24,4 +24,9 @@ struct FoundScan {
 std::vector<FoundScan> find_scans(const std::vector<std::filesystem::path>& inputs,
                                   const std::filesystem::path& archive);
 
+/// Likewise the scans and datasets (.vtkhdf) in which objects are looked for. Folders `passed_over`
+/// are not searched, unless they are inputs themselves.
+std::vector<FoundScan> find_scenes(const std::vector<std::filesystem::path>& inputs,
+                                   const std::vector<std::filesystem::path>& passed_over);
+
 }  // namespace semigeo::jobs

@@ -8,6 +8,7 @@
 #include "io/posting_partition.hpp"
 #include "io/triplet_run.hpp"
 #include "io/xdmf.hpp"
+#include "jobs/stages/recognised_file.hpp"
 
 namespace semigeo::jobs {
 namespace {
@@ -23,9 +24,11 @@ std::string read_key(const Job& job) {
     case JobKind::kPartition:
       return io::posting_partition_key(job.output);
     case JobKind::kLibrary:
+      return io::library_key(job.output);
+    case JobKind::kRecognise:
       break;
   }
-  return io::library_key(job.output);
+  return recognised_key(job.output);
 }
 
 }  // namespace
@@ -39,9 +42,11 @@ std::string_view name_of(JobKind kind) {
     case JobKind::kPartition:
       return "partition";
     case JobKind::kLibrary:
+      return "library";
+    case JobKind::kRecognise:
       break;
   }
-  return "library";
+  return "recognise";
 }
 
 std::string_view output_name_of(JobKind kind) {
@@ -53,9 +58,11 @@ std::string_view output_name_of(JobKind kind) {
     case JobKind::kPartition:
       return "postings";
     case JobKind::kLibrary:
+      return "hash library";
+    case JobKind::kRecognise:
       break;
   }
-  return "hash library";
+  return "recognition";
 }
 
 std::string job_id(const Job& job) {

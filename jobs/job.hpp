@@ -16,10 +16,11 @@ enum class JobKind {
   kSurface,    ///< scan in, dataset out
   kTriplets,   ///< dataset in, run out
   kPartition,  ///< runs of all models in, the postings of some shapes out
-  kLibrary     ///< runs and partitions in, library out
+  kLibrary,    ///< runs and partitions in, library out
+  kRecognise   ///< scene and library in, what of it is in the scene out
 };
 inline constexpr std::array kJobKinds = {JobKind::kSurface, JobKind::kTriplets, JobKind::kPartition,
-                                         JobKind::kLibrary};
+                                         JobKind::kLibrary, JobKind::kRecognise};
 
 /// "surface", "triplets", ...
 std::string_view name_of(JobKind kind);
@@ -29,17 +30,20 @@ std::string_view output_name_of(JobKind kind);
 /// From files to one file. Whatever is not said to be of a kind is of all.
 struct Job {
   JobKind kind = JobKind::kSurface;
-  std::string name;             ///< of the dataset; of the partition or the library, its file's
-  std::filesystem::path input;  ///< the scan; the dataset; the folder of runs and partitions
+  std::string name;  ///< of the dataset, the scene; of partition and library, its file's
+  std::filesystem::path
+      input;  ///< the scan; the dataset; the folder of runs and partitions; the scene
   std::filesystem::path output;
   std::string key;              ///< hash of kind, code version, parameters and inputs: job_key
-  std::string input_name = {};  ///< surface: what the dataset says of it, as UTF-8
-  std::string input_xxh3 = {};  ///< surface: of the scan's bytes
+  std::string input_name = {};  ///< surface, recognise: what the output says of it, as UTF-8
+  std::string input_xxh3 = {};  ///< surface, recognise: of its bytes
   std::vector<std::string> models = {};  ///< partition, library: names of all, sorted
   io::ShapeRange shapes = {};            ///< partition
-  std::filesystem::path library = {};    ///< partition: what it is a part of
-  int partitions = 0;                    ///< library: how many there are
-  std::int64_t buffer_bytes = 0;         ///< partition, library: of memory; 0: as they like
+  std::filesystem::path library =
+      {};                           ///< partition: what it is a part of; recognise: where it looks
+  std::string library_digest = {};  ///< recognise: of its content
+  int partitions = 0;               ///< library: how many there are
+  std::int64_t buffer_bytes = 0;    ///< partition, library: of memory; 0: as they like
 };
 
 /// "surface <name>": what the journal, logs and the graph call the job.

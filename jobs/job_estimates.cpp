@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "io/scan_reader.hpp"
 #include "jobs/scan_size.hpp"
 
 namespace semigeo::jobs {
@@ -17,6 +18,12 @@ constexpr double kSecondsOfModel = 2e-4;  // to open its run
 constexpr double kBaseSeconds = 0.05;
 constexpr double kBaseBytes = 60e6;
 constexpr double kBytesOfModel = 1000;
+// Of recognition, for each byte of the library.
+constexpr double kLibraryMemory = 1;
+constexpr double kLibrarySeconds = 1e-9;
+constexpr double kThesisMemory = 8;
+constexpr double kThesisSeconds = 5e-8;
+constexpr double kVerifySeconds = 0.5;  // poses
 constexpr std::uint64_t kBufferBytes = std::uint64_t{256} << 20;
 constexpr std::uint64_t kLeastBufferBytes = std::uint64_t{8} << 20;
 
@@ -29,6 +36,25 @@ Estimate triplets_estimate(const std::vector<PlannedJob>& plan, const PlannedJob
   std::error_code error;
   const auto bytes = fs::file_size(planned.job.input, error);
   return error ? Estimate{} : estimates.of(static_cast<double>(bytes) / kDatasetBytes, levels, 1);
+}
+
+/// Its surface is smoothed like a model's; then surfaces of candidates are laid onto it.
+Estimate recognise_estimate(const PlannedJob& planned, const JobParameters& parameters,
+                            const Estimates& estimates) {
+  const int levels = parameters.recognition.levels;
+  std::error_code error;
+  const auto bytes = static_cast<double>(fs::file_size(planned.job.input, error));
+  Estimate estimate;
+  if (!error)
+    estimate = io::scan_format(planned.job.input)
+                   ? estimates.of(scan_size(planned.job.input), levels, 1)
+                   : estimates.of(bytes / kDatasetBytes, levels, 1);
+  const auto library = static_cast<double>(fs::file_size(planned.job.library, error));
+  if (error) return estimate;
+  const bool thesis = parameters.search.method == RecognitionMethod::kThesis;
+  estimate.peak_bytes += kBaseBytes + (thesis ? kThesisMemory : kLibraryMemory) * library;
+  estimate.seconds += kVerifySeconds + (thesis ? kThesisSeconds : kLibrarySeconds) * library;
+  return estimate;
 }
 
 Estimate merging_estimate(const PlannedJob& planned, int shares, std::uint64_t memory_bytes) {
@@ -68,6 +94,9 @@ std::vector<Estimate> estimates_of(const std::vector<PlannedJob>& plan,
         break;
       case JobKind::kLibrary:
         result[i] = merging_estimate(planned, 1, memory_bytes);
+        break;
+      case JobKind::kRecognise:
+        result[i] = recognise_estimate(planned, parameters, estimates);
         break;
     }
   }

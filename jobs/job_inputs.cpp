@@ -22,6 +22,7 @@ const std::string& JobInputs::key_of_run(const fs::path& run) {
 bool JobInputs::settle(Job& job) {
   switch (job.kind) {
     case JobKind::kSurface:
+    case JobKind::kRecognise:
       break;
     case JobKind::kTriplets:
       job.key.clear();

@@ -16,10 +16,10 @@ class JobInputs {
  public:
   explicit JobInputs(RecognitionParameters parameters) : parameters_(parameters) {}
 
-  /// To be called when the jobs before it have ended; surface jobs are left as they are. Triplets:
-  /// of the dataset that is there. Partition, library: of the models that have runs. Returns
-  /// whether what it would make is there, or is not needed: partitions of a library that is.
-  /// io::Error if something to begin with is missing.
+  /// To be called when the jobs before it have ended; surface jobs and
+  /// recognitions are left as they are. Triplets: of the dataset that is there. Partition, library:
+  /// of the models that have runs. Returns whether what it would make is there, or is not needed:
+  /// partitions of a library that is. io::Error if something to begin with is missing.
   bool settle(Job& job);
 
  private:

@@ -10,6 +10,7 @@ constexpr const char* kSurfaceJobVersion = "surface 10";
 constexpr const char* kTripletsJobVersion = "triplets 1";
 constexpr const char* kPartitionJobVersion = "partition 1";
 constexpr const char* kLibraryJobVersion = "library 1";
+constexpr const char* kRecogniseJobVersion = "recognise 1";
 
 std::string joined(std::span<const std::string> keys) {
   std::string text;
@@ -40,6 +41,13 @@ std::string library_key(std::span<const std::string> run_keys,
                         const RecognitionParameters& parameters) {
   return io::xxh3_of_text(std::string(kLibraryJobVersion) + '\n' + to_json(parameters) +
                           joined(run_keys));
+}
+
+std::string recognise_key(const std::string& name, const std::string& input_name,
+                          const std::string& input_xxh3, const std::string& library_digest,
+                          const SearchParameters& parameters) {
+  return io::xxh3_of_text(std::string(kRecogniseJobVersion) + '\n' + to_json(parameters) + '\n' +
+                          name + '\n' + input_name + '\n' + input_xxh3 + '\n' + library_digest);
 }
 
 }  // namespace semigeo::jobs

@@ -24,4 +24,9 @@ std::string partition_key(std::span<const std::string> run_keys, const io::Shape
 std::string library_key(std::span<const std::string> run_keys,
                         const RecognitionParameters& parameters);
 
+/// `library_digest`: of the content of the library in which the scene is looked for.
+std::string recognise_key(const std::string& name, const std::string& input_name,
+                          const std::string& input_xxh3, const std::string& library_digest,
+                          const SearchParameters& parameters);
+
 }  // namespace semigeo::jobs

@@ -72,10 +72,18 @@ void each_field(LibraryJobResult& r, const Visit& visit) {
 }
 
 template <typename Visit>
+void each_field(RecogniseJobResult& r, const Visit& visit) {
+  visit("features", r.features);
+  visit("triplets", r.triplets);
+  visit("objects", r.objects);
+}
+
+template <typename Visit>
 void each_field(std::monostate&, const Visit&) {}
 
 /// Numbers of the kinds of results: their places in JobResult.
-constexpr const char* kResultNames[] = {"", "surface", "triplets", "partition", "library"};
+constexpr const char* kResultNames[] = {"",          "surface", "triplets",
+                                        "partition", "library", "recognise"};
 static_assert(std::size(kResultNames) == std::variant_size_v<JobResult>);
 
 /// Null for none.
@@ -106,6 +114,7 @@ JobResult result_from(const json& object) {
   read_result<TripletsJobResult>(object, result);
   read_result<PartitionJobResult>(object, result);
   read_result<LibraryJobResult>(object, result);
+  read_result<RecogniseJobResult>(object, result);
   if (result.index() == 0) throw std::runtime_error("is no answer of a job: of no known kind");
   return result;
 }
@@ -145,10 +154,12 @@ std::string to_line(const JobRequest& request) {
               {"models", escaped_list(job.models)},
               {"shapes", {job.shapes.first, job.shapes.end}},
               {"library", escaped(job.library.string())},
+              {"library_digest", job.library_digest},
               {"partitions", job.partitions},
               {"buffer_bytes", job.buffer_bytes},
               {"parameters", json::parse(to_json(request.parameters.surface))},
               {"recognition", json::parse(to_json(request.parameters.recognition))},
+              {"search", json::parse(to_json(request.parameters.search))},
               {"sidecar_only", request.sidecar_only},
               {"threads", request.threads},
               {"memory_bytes", request.memory_bytes},
@@ -175,11 +186,13 @@ JobRequest job_request_from(const std::string& line) {
     object.at("shapes").at(0).get_to(job.shapes.first);
     object.at("shapes").at(1).get_to(job.shapes.end);
     job.library = text("library");
+    object.at("library_digest").get_to(job.library_digest);
     object.at("partitions").get_to(job.partitions);
     object.at("buffer_bytes").get_to(job.buffer_bytes);
     request.parameters.surface = parameters_from_json(object.at("parameters").dump());
     request.parameters.recognition =
         recognition_parameters_from_json(object.at("recognition").dump());
+    request.parameters.search = search_parameters_from_json(object.at("search").dump());
     object.at("sidecar_only").get_to(request.sidecar_only);
     object.at("threads").get_to(request.threads);
     object.at("memory_bytes").get_to(request.memory_bytes);

@@ -45,15 +45,25 @@ JobResult run_stage(const Job& job, const JobParameters& parameters,
                                 .memory_bytes = job.buffer_bytes},
                                context);
     case JobKind::kLibrary:
+      return run_library_job({.runs = runs_of(job),
+                              .partitions = partitions_of(job),
+                              .parameters_json = to_json(parameters.recognition),
+                              .output = job.output,
+                              .key = job.key,
+                              .memory_bytes = job.buffer_bytes},
+                             context);
+    case JobKind::kRecognise:
       break;
   }
-  return run_library_job({.runs = runs_of(job),
-                          .partitions = partitions_of(job),
-                          .parameters_json = to_json(parameters.recognition),
-                          .output = job.output,
-                          .key = job.key,
-                          .memory_bytes = job.buffer_bytes},
-                         context);
+  return run_recognise_job({.scene = job.input,
+                            .input_name = job.input_name,
+                            .name = job.name,
+                            .input_xxh3 = job.input_xxh3,
+                            .library = job.library,
+                            .library_digest = job.library_digest,
+                            .output = job.output,
+                            .key = job.key},
+                           parameters.search, context);
 }
 
 }  // namespace semigeo::jobs

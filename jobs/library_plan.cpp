@@ -20,34 +20,12 @@ using Kind = Reason::Kind;
 
 constexpr const char* kArchiveLibrary = "library.h5";
 
-/// Of what a job's output is made, for reasons.
-const char* inputs_of(JobKind kind) {
-  return kind == JobKind::kTriplets ? "the dataset" : "the models";
-}
-
 /// The key of a run without reading all of it, as output_key does.
 std::string header_key(const Job& job) {
   try {
     return io::TripletRun(job.output).job_key();
   } catch (const io::Error&) {
     return "";
-  }
-}
-
-/// Compares what is there with what the job would make. While the library is what it should be,
-/// nobody is going to read its runs: their headers will do.
-void decide(PlannedJob& planned, bool by_header = false) {
-  const Job& job = planned.job;
-  const std::string name(output_name_of(job.kind));
-  std::error_code ignored;
-  if (!fs::exists(job.output, ignored)) {
-    planned.reasons = {{.kind = Kind::kNoOutput, .before = name}};
-  } else if (const std::string key = by_header ? header_key(job) : output_key(job); key.empty()) {
-    planned.reasons = {{.kind = Kind::kUnusableOutput, .before = name}};
-  } else if (key != job.key) {
-    planned.reasons = {{.kind = Kind::kInputs, .before = name, .now = inputs_of(job.kind)}};
-  } else {
-    planned.up_to_date = true;
   }
 }
 
@@ -172,9 +150,11 @@ void plan_library(std::vector<PlannedJob>& plan, const std::vector<LibraryModel>
                  .output = place.library,
                  .key = library_key(keys, parameters),
                  .models = names};
-  decide(library);
+  judge_output(library);
+  // While the library is what it should be, nobody is going to read its runs.
   for (const std::size_t triplets : after)
-    if (plan[triplets].error.empty()) decide(plan[triplets], library.up_to_date);
+    if (plan[triplets].error.empty())
+      judge_output(plan[triplets], library.up_to_date ? header_key : output_key);
   for (const io::ShapeRange& shapes : partition_shapes(std::ssize(keys))) {
     PlannedJob partition;
     const fs::path output = partition_path(place.parts, library.job.partitions++);
@@ -187,7 +167,7 @@ void plan_library(std::vector<PlannedJob>& plan, const std::vector<LibraryModel>
                      .shapes = shapes,
                      .library = place.library};
     partition.after = after;
-    decide(partition);
+    judge_output(partition);
     // They are removed when the library is made.
     if (library.up_to_date) {
       partition.up_to_date = true;
@@ -212,7 +192,7 @@ void verify_library_plan(std::vector<PlannedJob>& plan) {
       damaged(planned, problem);
       for (const std::size_t partition : planned.after) {
         plan[partition].up_to_date = false;
-        decide(plan[partition]);
+        judge_output(plan[partition]);
       }
     }
   }

@@ -58,6 +58,22 @@ void decide(PlannedJob& planned, const std::string& parameters_json, DigestCache
   }
 }
 
+/// Of what a job's output is made, for reasons.
+const char* inputs_of(JobKind kind) {
+  switch (kind) {
+    case JobKind::kSurface:
+      return "the scan";
+    case JobKind::kTriplets:
+      return "the dataset";
+    case JobKind::kPartition:
+    case JobKind::kLibrary:
+      return "the models";
+    case JobKind::kRecognise:
+      break;
+  }
+  return "the scene, the library";
+}
+
 std::string text_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
@@ -132,6 +148,21 @@ void verify_plan(std::vector<PlannedJob>& plan, int at_once) {
       continue;
     }
     planned.up_to_date = false;
+  }
+}
+
+void judge_output(PlannedJob& planned, std::string (*key_of)(const Job&)) {
+  const Job& job = planned.job;
+  const std::string name(output_name_of(job.kind));
+  std::error_code ignored;
+  if (!fs::exists(job.output, ignored)) {
+    planned.reasons = {{.kind = Kind::kNoOutput, .before = name}};
+  } else if (const std::string key = key_of(job); key.empty()) {
+    planned.reasons = {{.kind = Kind::kUnusableOutput, .before = name}};
+  } else if (key != job.key) {
+    planned.reasons = {{.kind = Kind::kInputs, .before = name, .now = inputs_of(job.kind)}};
+  } else {
+    planned.up_to_date = true;
   }
 }
 

@@ -40,6 +40,9 @@ std::vector<PlannedJob> plan_jobs(const RunConfig& config);
 /// again what is damaged. Of surface jobs; other kinds are passed over.
 void verify_plan(std::vector<PlannedJob>& plan, int at_once);
 
+/// Compares what is there, by its key, with what the job would make. Of all kinds but surface jobs.
+void judge_output(PlannedJob& planned, std::string (*key_of)(const Job&) = output_key);
+
 /// Tells the archive, which must exist, of which scans its datasets are made. Do it before they
 /// are.
 void record_sources(const std::filesystem::path& archive, const std::vector<PlannedJob>& plan);

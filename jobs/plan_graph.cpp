@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "io/utf8.hpp"
 
@@ -24,15 +25,25 @@ bool is_job(const GraphNode& node) {
   return std::ranges::any_of(kJobKinds, [&](JobKind kind) { return node.kind == name_of(kind); });
 }
 
-/// The file that a job reads but none makes: of surface jobs the scan, of triplets jobs a dataset.
+/// The file that a job reads but none makes: of surface jobs the scan, of triplets jobs a dataset,
+/// of recognitions the scene.
 GraphNode input_of(const PlannedJob& planned) {
-  const bool has_scan = planned.job.kind == JobKind::kSurface;
-  const std::string kind = has_scan ? "scan" : "dataset";
-  const std::string name = has_scan ? planned.scan.string() : planned.job.input.string();
+  const JobKind of = planned.job.kind;
+  const std::string kind = of == JobKind::kSurface    ? "scan"
+                           : of == JobKind::kTriplets ? "dataset"
+                                                      : "scene";
+  const std::string name =
+      of == JobKind::kTriplets ? planned.job.input.string() : planned.scan.string();
   return {.id = kind + ' ' + name,
           .kind = kind,
           .name = name,
           .state = planned.error.empty() ? "readable" : "unreadable"};
+}
+
+GraphNode library_of(const Job& recognise) {
+  const std::string kind(output_name_of(JobKind::kLibrary));
+  const std::string name = recognise.library.string();
+  return {.id = kind + ' ' + name, .kind = kind, .name = name, .state = "readable"};
 }
 
 /// Between quotes; names may hold anything.
@@ -53,6 +64,7 @@ std::string quoted(const std::string& text) {
 
 std::vector<GraphNode> graph_of(const std::vector<PlannedJob>& plan) {
   std::vector<GraphNode> graph;
+  std::set<std::string> libraries;  // one node for all scenes
   for (const PlannedJob& planned : plan) {
     const Job& job = planned.job;
     GraphNode node{.id = job_id(job),
@@ -61,9 +73,15 @@ std::vector<GraphNode> graph_of(const std::vector<PlannedJob>& plan) {
                    .state = std::string(state_of(planned))};
     for (const std::size_t before : planned.after)
       node.dependencies.push_back(output_id(plan[before].job));
-    if (job.kind <= JobKind::kTriplets && planned.after.empty()) {
+    const bool of_many = job.kind == JobKind::kPartition || job.kind == JobKind::kLibrary;
+    if (!of_many && planned.after.empty()) {
       graph.push_back(input_of(planned));
       node.dependencies.push_back(graph.back().id);
+    }
+    if (job.kind == JobKind::kRecognise) {
+      const GraphNode library = library_of(job);
+      node.dependencies.push_back(library.id);
+      if (libraries.insert(library.id).second) graph.push_back(library);
     }
     graph.push_back(node);
     graph.push_back({.id = output_id(job),

@@ -19,6 +19,7 @@ void add_run(CLI::App& app, int& exit_code);
 void add_job(CLI::App& app, int& exit_code);
 void add_status(CLI::App& app, int& exit_code);
 void add_library(CLI::App& app, int& exit_code);
+void add_recognise(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);

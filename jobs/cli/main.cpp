@@ -42,6 +42,7 @@ int run(int argc, char** argv) {
       "  semigeo status archive                  how far is it?\n"
       "  semigeo info archive                    what is in it\n"
       "  semigeo check archive                   is every byte as it was written?\n"
+      "  semigeo recognise scene.ply --library archive   which models are in it, and where\n"
       "  semigeo export archive/scans/x.ply.vtkhdf --level 4 --output smooth.ply\n");
   app.set_version_flag("--version", SEMIGEO_VERSION);
   app.set_config("--config", "", "Read options from a TOML file like archive/semigeo.toml");
@@ -52,6 +53,7 @@ int run(int argc, char** argv) {
   add_run(app, exit_code);
   add_status(app, exit_code);
   add_library(app, exit_code);
+  add_recognise(app, exit_code);
   add_info(app, exit_code);
   add_check(app, exit_code);
   add_export(app, exit_code);

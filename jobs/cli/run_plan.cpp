@@ -32,7 +32,8 @@ struct Possession {
   std::optional<ArchiveLock> lock;
   std::exception_ptr unwritable;
 
-  explicit Possession(const fs::path& archive) {
+  Possession(const fs::path& archive, bool is_kept) {
+    if (!is_kept) return;
     try {
       make_folder(archive);
       lock.emplace(archive);
@@ -154,9 +155,12 @@ void clean_up(const RunOptions& options, const std::vector<PlannedJob>& plan,
   }
 }
 
-int print_results(const RunOptions& options, const std::vector<PlannedJob>& plan,
-                  const std::vector<JobOutcome>& outcomes, const RunSummary& summary) {
-  if (options.json) {
+int print_results(const RunOptions& options, const PlanSource& source,
+                  const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,
+                  const RunSummary& summary) {
+  if (source.print) {
+    source.print(plan, outcomes, summary);
+  } else if (options.json) {
     print_json(plan, outcomes, options.config.jobs.surface, summary);
   } else {
     print_text(plan, outcomes, summary);
@@ -194,7 +198,7 @@ void end(RunJournal& journal, const RunSummary& summary) {
 int run(const RunOptions& options, const PlanSource& source) {
   const auto start = std::chrono::steady_clock::now();
   const fs::path& archive = options.config.archive;
-  const Possession possession(archive);
+  const Possession possession(archive, source.is_kept);
   // What is to be verified is not taken from memory.
   DigestCache cache = options.verify ? DigestCache(archive) : DigestCache::read(archive);
   const std::vector<PlannedJob> plan = source.plan(cache);
@@ -203,7 +207,7 @@ int run(const RunOptions& options, const PlanSource& source) {
   std::optional<RunJournal> journal;
   if (possession.lock) {
     journal = begin(options, source, plan, summary, cache);
-  } else if (summary.up_to_date < std::ssize(plan)) {
+  } else if (source.is_kept && summary.up_to_date < std::ssize(plan)) {
     std::rethrow_exception(possession.unwritable);
   }
   if (options.explain && !options.json) {
@@ -226,7 +230,7 @@ int run(const RunOptions& options, const PlanSource& source) {
     print_submitted(stages, options.json);
     return summary.failed == 0 ? kAllDone : kSomeFailed;
   }
-  return print_results(options, plan, outcomes, summary);
+  return print_results(options, source, plan, outcomes, summary);
 }
 
 }  // namespace

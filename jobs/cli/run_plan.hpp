@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "jobs/cli/run_options.hpp"
+#include "jobs/cli/run_report.hpp"
 #include "jobs/digest_cache.hpp"
 #include "jobs/plan.hpp"
 
@@ -17,6 +18,11 @@ struct PlanSource {
   /// Before jobs run, in a folder that is ours and can be written.
   std::function<void(const std::vector<PlannedJob>&)> prepare = {};
   bool is_archive = true;  ///< has scans: what was learned of them is kept
+  bool is_kept = true;     ///< else nobody else knows the folder: no lock, no journal
+  /// Instead of the report of a run. outcomes[i] belongs to plan[i].
+  std::function<void(const std::vector<PlannedJob>&, const std::vector<JobOutcome>& outcomes,
+                     const RunSummary&)>
+      print = {};
 };
 
 /// Makes the plan and runs it, or says what would run; prints results; returns an exit code.

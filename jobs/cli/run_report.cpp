@@ -124,6 +124,7 @@ void print_library(const Job& library, JobState state) {
 }
 
 const char* what_of(const PlannedJob& planned) {
+  if (planned.job.kind == JobKind::kRecognise) return "scenes";
   return planned.job.kind == JobKind::kSurface ? "scans" : "jobs of a library";
 }
 

@@ -1,6 +1,5 @@
 #include "jobs/stages/surface_job.hpp"
 
-#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -10,9 +9,6 @@
 
 #include "engine/task_graph.hpp"
 #include "io/dataset_writer.hpp"
-#include "io/error.hpp"
-#include "io/file_digest.hpp"
-#include "io/scan_reader.hpp"
 #include "jobs/stages/evolving_surface.hpp"
 #include "jobs/stages/level_features.hpp"
 #include "kernels/scale_selection.hpp"
@@ -20,34 +16,6 @@
 
 namespace semigeo::jobs {
 namespace {
-
-/// Mean edge lengths beyond which single precision cannot hold curvatures (length^-2).
-constexpr double kShortestMeanEdge = 1e-12;
-constexpr double kLongestMeanEdge = 1e12;
-
-nlohmann::json repairs_json(const kernels::SurfaceRepairs& repairs) {
-  return {{"degenerate_faces", repairs.degenerate_faces},
-          {"duplicate_faces", repairs.duplicate_faces},
-          {"flipped_faces", repairs.flipped_faces},
-          {"isolated_vertices", repairs.isolated_vertices},
-          {"nonmanifold_faces", repairs.nonmanifold_faces},
-          {"split_vertices", repairs.split_vertices},
-          {"welded_vertices", repairs.welded_vertices}};
-}
-
-void check_usable(const kernels::Surface& surface, const SurfaceJob& job,
-                  const kernels::SurfaceRepairs& repairs) {
-  if (surface.face_count() == 0)
-    throw io::Error(job.input, "",
-                    "no usable triangle is left after repair (" + to_json(repairs) + ")",
-                    "check how the scan was exported");
-  const double edge = kernels::mean_edge_length(surface);
-  if (!(edge >= kShortestMeanEdge && edge <= kLongestMeanEdge))
-    throw io::Error(
-        job.input, "",
-        "the mean edge length, " + nlohmann::json(edge).dump() + ", is outside 1e-12 ... 1e12",
-        "export the scan in a unit that suits its size");
-}
 
 /// Encodes arrays chunk by chunk on all workers.
 class ParallelEncoder {
@@ -236,10 +204,6 @@ io::Selection selection(std::vector<std::int64_t> feature_counts, std::optional<
 
 }  // namespace
 
-std::string to_json(const kernels::SurfaceRepairs& repairs) {
-  return repairs_json(repairs).dump();
-}
-
 std::string to_json(const kernels::RemeshCounts& remeshed) {
   nlohmann::json json;
   for (const io::LevelCount& count : io::kLevelCounts) json[count.name] = remeshed.*count.count;
@@ -260,27 +224,19 @@ SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters&
   Origins origins;
   kernels::Surface surface;
   {
-    io::Scan scan = io::read_scan(job.input);
-    if (io::xxh3_of_file(job.input) != job.input_xxh3)
-      throw io::Error(job.input, "", "the file changed while it was read", "run again");
+    ScanSurface scan = read_surface(job.input, job.input_xxh3);
     result.format = scan.format;
-    kernels::BuiltSurface built = kernels::build_surface(std::move(scan.mesh));
-    check_usable(built.surface, job, built.repairs);
-    result.repairs = built.repairs;
+    result.repairs = scan.built.repairs;
+    header.repairs_json = scan.repairs_json;
+    header.origin = {scan.built.origin.x(), scan.built.origin.y(), scan.built.origin.z()};
     PreparedSurface prepared =
-        prepare_surface(std::move(built.surface), parameters.preparation, context);
+        prepare_surface(std::move(scan.built.surface), parameters.preparation, context);
     result.preparation = prepared.result;
     header.preparation_json = to_json(prepared.result, parameters.preparation);
     result.vertices = prepared.surface.vertex_count();
     result.triangles = prepared.surface.face_count();
     result.parts = prepared.surface.part_count;
-    nlohmann::json repairs = repairs_json(built.repairs);
-    repairs["polygons_triangulated"] = scan.polygons_triangulated;
-    repairs["faces_skipped"] = scan.faces_skipped;
-    repairs["bytes_after_end"] = scan.bytes_after_end;
-    header.repairs_json = repairs.dump();
     result.levels = parameters.levels + 1;
-    header.origin = {built.origin.x(), built.origin.y(), built.origin.z()};
 
     writer = std::make_unique<io::DatasetWriter>(job.output, header, parameters.compression);
     ParallelEncoder encoder(context.workers, parameters.compression);

@@ -7,6 +7,7 @@
 #include "engine/run_context.hpp"
 #include "jobs/config.hpp"
 #include "jobs/stages/prepare_surface.hpp"
+#include "jobs/stages/scan_surface.hpp"
 #include "kernels/remeshing.hpp"
 #include "kernels/surface_builder.hpp"
 
@@ -36,7 +37,6 @@ struct SurfaceJobResult {
 };
 
 /// Counts as JSON with sorted keys.
-std::string to_json(const kernels::SurfaceRepairs& repairs);
 std::string to_json(const kernels::RemeshCounts& remeshed);
 
 /// Reads and repairs one scan, evolves it through all levels and writes its dataset, which appears

@@ -37,6 +37,25 @@ class FindScansTest : public testing::Test {
 
 using Names = std::vector<std::string>;
 
+TEST_F(FindScansTest, ScenesMayBeDatasets) {
+  add("scenes/a.ply");
+  add("scenes/b.vtkhdf");
+  add("scenes/b.xdmf");
+  const fs::path archive = add("scenes/archive/scans/c.ply.vtkhdf").parent_path().parent_path();
+  const auto scenes = [&](const fs::path& input) {
+    Names result;
+    for (const FoundScan& scene : find_scenes({input}, {folder_ / "other", archive}))
+      result.push_back(scene.name);
+    return result;
+  };
+  EXPECT_EQ(scenes(folder_ / "scenes"), (Names{"a.ply", "b.vtkhdf"}));
+  EXPECT_EQ(scenes(archive), (Names{"scans__c.ply.vtkhdf"}));
+  EXPECT_EQ(scenes(archive / "scans/c.ply.vtkhdf"), (Names{"c.ply.vtkhdf"}));
+  EXPECT_THROW(scenes(folder_ / "scenes/b.xdmf"), io::Error);
+  EXPECT_EQ(names({folder_ / "scenes"}), (Names{"a.ply"}));
+  EXPECT_THROW(find({folder_ / "scenes/b.vtkhdf"}), io::Error);
+}
+
 TEST_F(FindScansTest, SearchesFoldersForScansOfEveryFormat) {
   for (const char* file : {"in/b.obj", "in/a.ply", "in/deep/er/c.off", "in/d.STL", "in/e.stl.gz",
                            "in/f.Ply.GZ", "in/notes.txt", "in/g.ply.bak", "in/h.gz", "in/ply"})

@@ -50,5 +50,18 @@ TEST(JobKeyTest, OfPartitionsAndLibrariesChangesWithTheRunsAndTheirOrder) {
   }
 }
 
+TEST(JobKeyTest, OfARecognitionChangesWithEverythingThatTheContentDependsOn) {
+  std::set<std::string> keys = {recognise_key("a.ply", "x/a.ply", "1234", "567", {})};
+  const auto is_new = [&](const std::string& key) { return keys.insert(key).second; };
+  EXPECT_TRUE(is_new(recognise_key("b.ply", "x/a.ply", "1234", "567", {})));
+  EXPECT_TRUE(is_new(recognise_key("a.ply", "y/a.ply", "1234", "567", {})));
+  EXPECT_TRUE(is_new(recognise_key("a.ply", "x/a.ply", "1235", "567", {})));
+  EXPECT_TRUE(is_new(recognise_key("a.ply", "x/a.ply", "1234", "568", {})));
+  EXPECT_TRUE(is_new(
+      recognise_key("a.ply", "x/a.ply", "1234", "567", {.method = RecognitionMethod::kThesis})));
+  EXPECT_TRUE(is_new(recognise_key("a.ply", "x/a.ply", "1234", "567", {.min_score = 0.9})));
+  EXPECT_FALSE(is_new(recognise_key("a.ply", "x/a.ply", "1234", "567", {})));
+}
+
 }  // namespace
 }  // namespace semigeo::jobs

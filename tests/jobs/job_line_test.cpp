@@ -51,9 +51,9 @@ void every_field_of_request(Request& request, const Visit& visit) {
   visit_each(visit, sidecar_only, threads, memory_bytes, log);
   {
     auto& [kind, name, input, output, key, input_name, input_xxh3, models, shapes, library,
-           partitions, buffer_bytes] = job;
+           library_digest, partitions, buffer_bytes] = job;
     visit_each(visit, name, input, output, key, input_name, input_xxh3, models, shapes.first,
-               shapes.end, library, partitions, buffer_bytes);
+               shapes.end, library, library_digest, partitions, buffer_bytes);
   }
 }
 
@@ -111,6 +111,7 @@ std::vector<std::string> values_of(const JobRequest& request) {
   listed.values.emplace_back(name_of(request.job.kind));
   listed.values.push_back(to_json(request.parameters.surface));
   listed.values.push_back(to_json(request.parameters.recognition));
+  listed.values.push_back(to_json(request.parameters.search));
   return listed.values;
 }
 
@@ -119,7 +120,8 @@ TEST(JobLineTest, EveryFieldOfARequestArrives) {
   every_field_of_request(request, Distinct());
   request.parameters = {
       .surface = unusual_parameters(),
-      .recognition = {.levels = 7, .most_features = 17, .torsion = true, .samples = 170}};
+      .recognition = {.levels = 7, .most_features = 17, .torsion = true, .samples = 170},
+      .search = {.method = RecognitionMethod::kThesis, .min_score = 0.123}};
   request.job.kind = JobKind::kPartition;
   for (const JobRequest& sent : {request, JobRequest{}}) {
     const std::string line = to_line(sent);
@@ -180,6 +182,10 @@ TEST(JobLineTest, ResultsOfEveryKindArrive) {
   const auto [models, postings, digest] = std::get<LibraryJobResult>(library);
   EXPECT_EQ(std::vector({models, postings}), (std::vector<std::int64_t>{1, 2}));
   EXPECT_EQ(digest, "d");
+  const auto recognised =
+      after_a_line(RecogniseJobResult{.features = 1, .triplets = 2, .objects = 3});
+  const auto [found, looked_up, objects] = std::get<RecogniseJobResult>(recognised);
+  EXPECT_EQ(std::vector({found, looked_up, objects}), (std::vector<std::int64_t>{1, 2, 3}));
 }
 
 TEST(JobLineTest, AJobMayBeDoneWithoutADataset) {

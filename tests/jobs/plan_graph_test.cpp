@@ -89,6 +89,29 @@ TEST(PlanGraphTest, LeadsFromDatasetsToALibrary) {
   EXPECT_NE(to_dot(graph).find("\"run a\" [shape=note"), std::string::npos);
 }
 
+TEST(PlanGraphTest, ScenesShareTheirLibrary) {
+  std::vector<PlannedJob> jobs(2);
+  for (PlannedJob& planned : jobs) {
+    const std::string name = &planned == jobs.data() ? "a" : "b";
+    planned.job = {.kind = JobKind::kRecognise,
+                   .name = name,
+                   .input = name + ".ply",
+                   .output = name + ".json",
+                   .key = {},
+                   .library = "/l.h5"};
+    planned.scan = "/in/" + name + ".ply";
+    planned.reasons = {{.kind = Reason::Kind::kNoOutput}};
+  }
+  std::vector<std::string> ids;
+  const auto graph = graph_of(jobs);
+  for (const GraphNode& node : graph) ids.push_back(node.id);
+  EXPECT_EQ(ids, (std::vector<std::string>{"scene /in/a.ply", "hash library /l.h5", "recognise a",
+                                           "recognition a.json", "scene /in/b.ply", "recognise b",
+                                           "recognition b.json"}));
+  for (const std::size_t job : {2, 5})
+    EXPECT_EQ(graph[job].dependencies.back(), "hash library /l.h5");
+}
+
 TEST(PlanGraphTest, JsonHoldsEveryNode) {
   const auto graph = graph_of(plan());
   const auto document = nlohmann::json::parse(to_json(graph));

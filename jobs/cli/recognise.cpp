@@ -1,0 +1,149 @@
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/error.hpp"
+#include "jobs/cli/command.hpp"
+#include "jobs/cli/recognise_report.hpp"
+#include "jobs/cli/run_plan.hpp"
+#include "jobs/cli/temporary_folder.hpp"
+#include "jobs/recognise_plan.hpp"
+#include "jobs/stages/recognised_file.hpp"
+
+namespace semigeo::jobs::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RecogniseOptions {
+  RunOptions run;  ///< config.archive: the folder that keeps what was recognised
+  std::string library;
+  std::string output;  ///< empty: nothing is kept
+  std::string method = "overlap";
+  std::optional<double> min_score;
+  std::size_t top = RecogniseReport{}.top;
+};
+
+void apply(RecogniseOptions& options) {
+  apply_words(options.run);
+  if (options.output.empty() && options.run.where == "slurm")
+    throw CLI::ValidationError("--output", "give a folder that all machines see with Slurm");
+  SearchParameters& search = options.run.config.jobs.search;
+  if (options.method == "thesis") search.method = RecognitionMethod::kThesis;
+  search.min_score = options.min_score.value_or(default_min_score(search.method));
+  if (!(search.min_score >= 0) || !std::isfinite(search.min_score))
+    throw CLI::ValidationError("--min-score", "give a number that is not negative");
+}
+
+/// Not the archives at hand, unless they are named: their datasets are the models.
+std::vector<FoundScan> scenes_of(const RecogniseOptions& options, const SearchedLibrary& library) {
+  std::vector<fs::path> passed_over = {library.path.parent_path()};
+  if (!options.output.empty()) passed_over.emplace_back(options.output);
+  return find_scenes(options.run.config.inputs, passed_over);
+}
+
+int recognise(RecogniseOptions& options) {
+  const SearchedLibrary library = searched_library(options.library);
+  std::vector<FoundScan> scenes;
+  try {
+    scenes = scenes_of(options, library);
+  } catch (const io::Error& e) {
+    std::fprintf(stderr, "semigeo: %s\n", e.what());
+    return kUsage;
+  }
+  if (scenes.empty()) {
+    std::fprintf(stderr,
+                 "semigeo: no scan (.ply, .obj, .off or .stl, or .gz of one) and no dataset "
+                 "(.vtkhdf) was found\n");
+    return kUsage;
+  }
+  std::optional<TemporaryFolder> temporary;
+  if (options.output.empty()) temporary.emplace();
+  RunConfig& config = options.run.config;
+  const fs::path folder = temporary ? temporary->path() : fs::path(options.output);
+  config.archive = folder;
+  config.jobs.recognition = library.parameters;
+  const RecogniseReport report = {.top = options.top, .has_files = !temporary};
+  return run_plan(
+      options.run,
+      {.plan =
+           [&](DigestCache&) {
+             return plan_recognition(scenes, library, config.jobs.search, folder, config.threads);
+           },
+       .prepare = [&](const std::vector<PlannedJob>& plan) { record_scenes(folder, plan); },
+       .is_archive = false,
+       .is_kept = !temporary,
+       .print =
+           [&](const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,
+               const RunSummary& summary) {
+             const auto print = options.run.json ? print_recognised_json : print_recognised;
+             print(plan, outcomes, summary, library, report);
+           }});
+}
+
+void add_options(CLI::App* command, RecogniseOptions& options) {
+  command
+      ->add_option("scenes", options.run.config.inputs,
+                   "Scans (.ply .obj .off .stl, each also .gz), datasets (.vtkhdf), folders")
+      ->default_str("")
+      ->required()
+      ->configurable(false);
+  command
+      ->add_option("--library", options.library,
+                   "The library, or an archive that has one: ARCHIVE/library.h5")
+      ->required()
+      ->configurable(false);
+  command
+      ->add_option(
+          "-o,--output", options.output,
+          "Keep what was recognised: FOLDER/recognised/<scene>.json. What is there and up\n"
+          "to date is not computed again. The folder may be an archive")
+      ->configurable(false);
+  command
+      ->add_option("--method", options.method,
+                   "How: surfaces are laid onto each other, or the thesis' votes and clusters,\n"
+                   "which name one model")
+      ->check(CLI::IsMember({"overlap", "thesis"}));
+  command
+      ->add_option("--min-score", options.min_score,
+                   "A model with less is not in the scene; 0 names the best, whatever it is")
+      ->default_str("");
+  command
+      ->add_option("--top", options.top,
+                   "Models of the ranking to print; " + std::to_string(kMostRanked) + " at most")
+      ->check(CLI::Range(std::size_t{0}, kMostRanked));
+  add_job_options(command, options.run);
+}
+
+}  // namespace
+
+void add_recognise(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<RecogniseOptions>();
+  CLI::App* command =
+      app.add_subcommand("recognise", "Say which models of a library are in a scene, and where");
+  command->alias("recognize");
+  command->footer(
+      "Examples:\n"
+      "  semigeo recognise scene.ply --library archive      in archive/library.h5\n"
+      "  semigeo recognise scenes/ --library mine.h5 --output found\n"
+      "                                                     keeps found/recognised/<scene>.json\n"
+      "  semigeo recognise scene.ply --library mine.h5 --json --top 20\n"
+      "\n"
+      "A pose leads from the model's coordinates to the scene's, in the units of their files: a\n"
+      "4 x 4 matrix for column vectors; and scale, translation d h q and angles gamma beta alpha\n"
+      "with R = Rz(alpha) Ry(beta) Rx(gamma). Exit codes: 0 all scenes were looked at, whether or\n"
+      "not something is in them, 1 some failed, 2 usage, 73 another run has the folder, 75 "
+      "stopped\n"
+      "early: run again to go on.\n");
+  add_options(command, *options);
+  command->fallthrough();
+  command->callback([options, &exit_code] {
+    apply(*options);
+    exit_code = recognise(*options);
+  });
+}
+
+}  // namespace semigeo::jobs::cli

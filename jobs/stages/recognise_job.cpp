@@ -1,0 +1,95 @@
+#include "jobs/stages/recognise_job.hpp"
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "io/dataset.hpp"
+#include "io/error.hpp"
+#include "io/file_digest.hpp"
+#include "io/scan_reader.hpp"
+#include "jobs/stages/recognised_file.hpp"
+#include "jobs/stages/scan_surface.hpp"
+#include "jobs/stages/thesis_recognition.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+/// Members of the largest cluster that objects of the thesis' method have, and others do not.
+constexpr double kThesisMinScore = 10;
+constexpr int kMostLevels = 16;
+
+/// The numbers of `scene` are filled in.
+kernels::RecognitionModel read_scene(const RecogniseJob& job,
+                                     const RecognitionParameters& parameters,
+                                     const engine::RunContext& context, RecognisedScene& scene) {
+  if (io::scan_format(job.scene)) {
+    const ScanSurface scan = read_surface(job.scene, job.input_xxh3);
+    scene.format = scan.format;
+    scene.repairs_json = scan.repairs_json;
+    scene.vertices = scan.built.surface.vertex_count();
+    scene.triangles = scan.built.surface.face_count();
+    return recognition_model(scan.built, parameters, context);
+  }
+  const io::Dataset dataset(job.scene);
+  const io::LevelInfo level = dataset.level(0);
+  scene.format = "dataset";
+  scene.vertices = level.vertices;
+  scene.triangles = level.triangles;
+  kernels::RecognitionModel model = recognition_model(dataset, parameters, context);
+  if (io::xxh3_of_file(job.scene) != job.input_xxh3)
+    throw io::Error(job.scene, "", "the file changed while it was read", "run again");
+  return model;
+}
+
+Recognition recognise(const io::HashLibrary& library, const kernels::RecognitionModel& scene,
+                      const SearchParameters& parameters, const engine::RunContext& context) {
+  // Where nothing stands out, nothing can be recognised.
+  if (scene.features.features.empty()) return {};
+  const RecognitionOptions options = {.min_score = parameters.min_score};
+  if (parameters.method == RecognitionMethod::kThesis)
+    return thesis_recognition(library, scene, options, context);
+  return recognise_scene(library, scene, options, context);
+}
+
+}  // namespace
+
+RecognitionParameters parameters_of(const io::HashLibrary& library) {
+  constexpr const char* kRemedy =
+      "use the version of semigeo that made it, or build it anew: semigeo library build";
+  try {
+    const RecognitionParameters parameters =
+        recognition_parameters_from_json(library.parameters_json());
+    if (nlohmann::json::parse(to_json(parameters)) ==
+            nlohmann::json::parse(library.parameters_json()) &&
+        parameters.levels >= 1 && parameters.levels <= kMostLevels &&
+        parameters.most_features >= 1 && parameters.samples >= 1)
+      return parameters;
+  } catch (const std::runtime_error&) {
+  }
+  throw io::Error(
+      library.path(), "",
+      "was made with parameters that this version does not know: " + library.parameters_json(),
+      kRemedy);
+}
+
+double default_min_score(RecognitionMethod method) {
+  return method == RecognitionMethod::kThesis ? kThesisMinScore : RecognitionOptions{}.min_score;
+}
+
+RecogniseJobResult run_recognise_job(const RecogniseJob& job, const SearchParameters& parameters,
+                                     const engine::RunContext& context) {
+  const io::HashLibrary library(job.library);
+  if (library.digest() != job.library_digest)
+    throw io::Error(job.library, "", "the library has changed meanwhile", "run again");
+  RecognisedScene scene = {.name = job.name, .input_name = job.input_name, .xxh3 = job.input_xxh3};
+  const kernels::RecognitionModel model = read_scene(job, parameters_of(library), context, scene);
+  scene.features = static_cast<std::int64_t>(model.features.features.size());
+  scene.samples = static_cast<std::int64_t>(model.samples.points.size());
+  const Recognition recognition = recognise(library, model, parameters, context);
+  write_recognised(job.output, job.key, scene, library, parameters, recognition);
+  return {.features = scene.features,
+          .triplets = recognition.scene_triplets,
+          .objects = static_cast<std::int64_t>(recognition.objects.size())};
+}
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,130 @@
+#include "jobs/stages/recognised_file.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <span>
+
+#include "io/atomic_file.hpp"
+#include "io/error.hpp"
+#include "io/file_digest.hpp"
+#include "io/utf8.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kFormat = "semigeo-recognition";
+constexpr int kFormatVersion = 1;
+constexpr const char* kRemedy = "remove it, and recognise the scene again";
+
+/// Source: thesis 4.6, (4.21): scale, translation (d, h, q), angles gamma, beta, alpha.
+json pose_json(const kernels::Similarity& pose) {
+  constexpr double kDegrees = 180 / std::numbers::pi;
+  const Eigen::Matrix4d m = pose.matrix();
+  json rows = json::array();
+  for (int i = 0; i < 4; ++i) rows.push_back({m(i, 0), m(i, 1), m(i, 2), m(i, 3)});
+  const kernels::EulerAngles angles = kernels::euler_angles(pose.rotation);
+  return {{"matrix", rows},
+          {"scale", pose.scale},
+          {"d", pose.translation.x()},
+          {"h", pose.translation.y()},
+          {"q", pose.translation.z()},
+          {"gamma_radians", angles.gamma},
+          {"beta_radians", angles.beta},
+          {"alpha_radians", angles.alpha},
+          {"gamma_degrees", angles.gamma * kDegrees},
+          {"beta_degrees", angles.beta * kDegrees},
+          {"alpha_degrees", angles.alpha * kDegrees}};
+}
+
+json candidates_json(std::span<const Candidate> candidates, const io::HashLibrary& library) {
+  json list = json::array();
+  for (const Candidate& candidate : candidates) {
+    const io::ModelInfo& model = library.models()[static_cast<std::size_t>(candidate.model)];
+    list.push_back({{"model", io::as_utf8(model.name)},
+                    {"model_digest", model.digest},
+                    {"score", candidate.score},
+                    {"votes", candidate.votes},
+                    {"cluster", candidate.cluster},
+                    {"match", candidate.match},
+                    {"conflict", candidate.conflict},
+                    {"explained", candidate.explained},
+                    {"pose", pose_json(candidate.pose)}});
+  }
+  return list;
+}
+
+json scene_json(const RecognisedScene& scene) {
+  json document = {{"name", io::as_utf8(scene.name)},
+                   {"input_name", scene.input_name},
+                   {"xxh3", scene.xxh3},
+                   {"format", scene.format},
+                   {"vertices", scene.vertices},
+                   {"triangles", scene.triangles},
+                   {"features", scene.features},
+                   {"samples", scene.samples}};
+  if (!scene.repairs_json.empty()) document["repairs"] = json::parse(scene.repairs_json);
+  return document;
+}
+
+std::string text_of(const json& document) {
+  return document.dump(2) + '\n';
+}
+
+std::string digest_of(const json& document) {
+  return io::xxh3_of_text(document.dump());
+}
+
+}  // namespace
+
+void write_recognised(const std::filesystem::path& path, const std::string& key,
+                      const RecognisedScene& scene, const io::HashLibrary& library,
+                      const SearchParameters& parameters, const Recognition& recognition) {
+  const std::span ranking(recognition.ranking);
+  json document = {
+      {"format", kFormat},
+      {"format_version", kFormatVersion},
+      {"job_key", key},
+      {"scene", scene_json(scene)},
+      {"library",
+       {{"digest", library.digest()},
+        {"models", library.models().size()},
+        {"parameters", json::parse(library.parameters_json())}}},
+      {"search", json::parse(to_json(parameters))},
+      {"scene_triplets", recognition.scene_triplets},
+      {"matches", recognition.matches},
+      {"models_ranked", ranking.size()},
+      {"objects", candidates_json(recognition.objects, library)},
+      {"ranking", candidates_json(ranking.first(std::min(ranking.size(), kMostRanked)), library)}};
+  document["digest"] = digest_of(document);
+  io::write_file_atomically(path, text_of(document));
+}
+
+json read_recognised(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw io::Error(path, "", "cannot be read", "check the path and its permissions");
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  json document = json::parse(text, nullptr, false);
+  if (!document.is_object() || document.value("format", json()) != kFormat)
+    throw io::Error(path, "", "is not what semigeo has recognised, or is damaged", kRemedy);
+  if (document.value("format_version", json()) != kFormatVersion)
+    throw io::Error(path, "", "is of another version", kRemedy);
+  json content = document;
+  content.erase("digest");
+  // Not every digit that changes makes another number.
+  if (document.value("digest", json()) != digest_of(content) || text != text_of(document))
+    throw io::Error(path, "", "is damaged: it does not have its digest", kRemedy);
+  return document;
+}
+
+std::string recognised_key(const std::filesystem::path& path) {
+  const json document = read_recognised(path);
+  const auto key = document.find("job_key");
+  return key != document.end() && key->is_string() ? key->get<std::string>() : "";
+}
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,62 @@
+#include "jobs/stages/scan_surface.hpp"
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "io/error.hpp"
+#include "io/file_digest.hpp"
+#include "io/scan_reader.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+/// Mean edge lengths beyond which single precision cannot hold curvatures (length^-2).
+constexpr double kShortestMeanEdge = 1e-12;
+constexpr double kLongestMeanEdge = 1e12;
+
+nlohmann::json repairs_json(const kernels::SurfaceRepairs& repairs) {
+  return {{"degenerate_faces", repairs.degenerate_faces},
+          {"duplicate_faces", repairs.duplicate_faces},
+          {"flipped_faces", repairs.flipped_faces},
+          {"isolated_vertices", repairs.isolated_vertices},
+          {"nonmanifold_faces", repairs.nonmanifold_faces},
+          {"split_vertices", repairs.split_vertices},
+          {"welded_vertices", repairs.welded_vertices}};
+}
+
+void check_usable(const std::filesystem::path& scan, const kernels::BuiltSurface& built) {
+  if (built.surface.face_count() == 0)
+    throw io::Error(scan, "",
+                    "no usable triangle is left after repair (" + to_json(built.repairs) + ")",
+                    "check how the scan was exported");
+  const double edge = kernels::mean_edge_length(built.surface);
+  if (!(edge >= kShortestMeanEdge && edge <= kLongestMeanEdge))
+    throw io::Error(
+        scan, "",
+        "the mean edge length, " + nlohmann::json(edge).dump() + ", is outside 1e-12 ... 1e12",
+        "export the scan in a unit that suits its size");
+}
+
+}  // namespace
+
+std::string to_json(const kernels::SurfaceRepairs& repairs) {
+  return repairs_json(repairs).dump();
+}
+
+ScanSurface read_surface(const std::filesystem::path& path, const std::string& xxh3) {
+  io::Scan scan = io::read_scan(path);
+  if (io::xxh3_of_file(path) != xxh3)
+    throw io::Error(path, "", "the file changed while it was read", "run again");
+  ScanSurface result;
+  result.built = kernels::build_surface(std::move(scan.mesh));
+  check_usable(path, result.built);
+  result.format = scan.format;
+  nlohmann::json repairs = repairs_json(result.built.repairs);
+  repairs["polygons_triangulated"] = scan.polygons_triangulated;
+  repairs["faces_skipped"] = scan.faces_skipped;
+  repairs["bytes_after_end"] = scan.bytes_after_end;
+  result.repairs_json = repairs.dump();
+  return result;
+}
+
+}  // namespace semigeo::jobs
