@@ -105,7 +105,7 @@ void add_options(CLI::App* command, RecogniseOptions& options) {
   command
       ->add_option("--method", options.method,
                    "How: surfaces are laid onto each other, or the thesis' votes and clusters,\n"
-                   "which name one model")
+                   "which name one model, even if none is there")
       ->check(CLI::IsMember({"overlap", "thesis"}));
   command
       ->add_option("--min-score", options.min_score,

@@ -14,8 +14,6 @@
 namespace semigeo::jobs {
 namespace {
 
-/// Members of the largest cluster that objects of the thesis' method have, and others do not.
-constexpr double kThesisMinScore = 10;
 constexpr int kMostLevels = 16;
 
 /// The numbers of `scene` are filled in.
@@ -73,7 +71,7 @@ RecognitionParameters parameters_of(const io::HashLibrary& library) {
 }
 
 double default_min_score(RecognitionMethod method) {
-  return method == RecognitionMethod::kThesis ? kThesisMinScore : RecognitionOptions{}.min_score;
+  return method == RecognitionMethod::kThesis ? 0 : RecognitionOptions{}.min_score;
 }
 
 RecogniseJobResult run_recognise_job(const RecogniseJob& job, const SearchParameters& parameters,

@@ -32,8 +32,9 @@ struct RecogniseJobResult {
 /// Throws io::Error if they are none that this program knows.
 RecognitionParameters parameters_of(const io::HashLibrary& library);
 
-/// The least score of an object, if nobody says another: a share for kOverlap, members of a cluster
-/// for kThesis.
+/// The least score of an object, if nobody says another. kThesis has none: its score is the size of
+/// a cluster, which grows with the number of features and tells what is there from what is not only
+/// beside that of other models.
 double default_min_score(RecognitionMethod method);
 
 /// Throws io::Error on an unreadable or unusable scene, on a damaged library, if one of them has

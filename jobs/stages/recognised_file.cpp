@@ -50,8 +50,10 @@ json candidates_json(std::span<const Candidate> candidates, const io::HashLibrar
                     {"score", candidate.score},
                     {"votes", candidate.votes},
                     {"cluster", candidate.cluster},
+                    {"support", candidate.support},
                     {"match", candidate.match},
                     {"conflict", candidate.conflict},
+                    {"closeness", candidate.closeness},
                     {"explained", candidate.explained},
                     {"pose", pose_json(candidate.pose)}});
   }
