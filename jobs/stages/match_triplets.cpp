@@ -14,6 +14,11 @@ using kernels::Triplet;
 /// So many postings stay in the first-level cache while all that looks for them passes.
 constexpr std::int64_t kTile = 512;
 
+/// From here on it pays to find out first how many matches there will be.
+constexpr double kManyCompared = 2e8;
+constexpr std::size_t kProbedBlocks = 12;
+constexpr std::size_t kProbedSegments = 40;
+
 /// Numbers of the triangles that triplets are, in whatever order of corners.
 std::vector<std::uint32_t> triangles_of(const std::vector<Triplet>& triplets) {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> sorted;
@@ -58,12 +63,15 @@ class Matcher {
         triangles_(triangles_of(scene)) {}
 
   TripletMatches run(const MatchLimits& limits, const engine::RunContext& context) {
-    const double triangles = triangles_.empty() ? 0 : 1.0 + std::ranges::max(triangles_);
-    const double share = static_cast<double>(limits.triangles) / std::max(triangles, 1.0);
+    const double triangles = triangles_.empty() ? 1 : 1.0 + std::ranges::max(triangles_);
+    double share = std::min(1.0, static_cast<double>(limits.triangles) / triangles);
     look_up(share);
-    if (const std::int64_t all = comparisons(); all > limits.compared)
-      look_up(std::min(share, 1.0) * static_cast<double>(limits.compared) /
-              static_cast<double>(all));
+    if (const auto compared = static_cast<double>(comparisons()); compared > kManyCompared) {
+      const double matches = compared * match_rate(context);
+      const double most = std::min(static_cast<double>(limits.compared) / compared,
+                                   static_cast<double>(limits.matches) / std::max(matches, 1.0));
+      if (most < 1) look_up(share *= most);
+    }
     cut_into_blocks();
     std::vector<std::vector<TripletMatch>> found(blocks_.size());
     context.workers.for_blocks(static_cast<std::int64_t>(blocks_.size()), 1,
@@ -110,7 +118,34 @@ class Matcher {
     return sum;
   }
 
+  /// Matches a comparison, in a few blocks that are spread evenly.
+  double match_rate(const engine::RunContext& context) {
+    cut_into_blocks();
+    const std::size_t step = std::max<std::size_t>(blocks_.size() / kProbedBlocks, 1);
+    const std::size_t probed = (blocks_.size() + step - 1) / step;
+    std::vector<std::int64_t> compared(probed);
+    std::vector<std::int64_t> matches(probed);
+    context.workers.for_blocks(static_cast<std::int64_t>(probed), 1, [&](engine::IndexRange range) {
+      for (auto i = range.begin; i < range.end; ++i) {
+        const auto [first, last] = blocks_[static_cast<std::size_t>(i) * step];
+        std::vector<TripletMatch> found;
+        compare_block({first, std::min(last, first + kProbedSegments)}, found);
+        matches[i] = static_cast<std::int64_t>(found.size());
+        for (std::size_t s = first; s < std::min(last, first + kProbedSegments); ++s)
+          compared[i] +=
+              (segments_[s].last_posting - segments_[s].first_posting) *
+              static_cast<std::int64_t>(segments_[s].last_lookup - segments_[s].first_lookup);
+      }
+    });
+    const auto sum = [](const std::vector<std::int64_t>& values) {
+      return static_cast<double>(std::accumulate(values.begin(), values.end(), std::int64_t{0}));
+    };
+    return sum(matches) / std::max(sum(compared), 1.0);
+  }
+
   void cut_into_blocks() {
+    blocks_.clear();
+    segments_.clear();
     const std::int64_t size = library_.block_size();
     for (std::size_t cell = 0; cell + 1 < cells_.size(); ++cell) {
       const std::size_t first = first_lookup_[cell];

@@ -21,12 +21,17 @@ using kernels::Similarity;
 
 /// A scene's feature may be a little out of the band that the model's is in.
 constexpr double kBandSlack = 1.075;
-constexpr std::size_t kShortlist = 200;     ///< models with the most votes
-constexpr std::size_t kMostMatches = 8000;  ///< of one model, the weightiest
+constexpr std::size_t kShortlist = 200;            ///< models with the most votes
+constexpr std::size_t kMostMatches = 8000;         ///< of one model, the weightiest;
+constexpr std::size_t kMatchesTogether = 600'000;  ///< if there are many models, fewer of each
 
 // Each look at a pose costs more than the one before, and fewer poses are looked at.
 constexpr std::int64_t kGlanceSamples = 60;
 constexpr std::size_t kGlanced = 40;  ///< of one model, go on
+constexpr std::size_t kFewModels = 40;
+constexpr int kFewClusters = 24;             ///< of each of more models than that; and of these
+constexpr std::size_t kModelsByGlance = 30;  ///< go on: those that look best,
+constexpr std::size_t kModelsByWeight = 20;  ///< and those of the heaviest clusters besides
 constexpr std::int64_t kCoarseSamples = 200;
 constexpr std::size_t kCoarseByOverlap = 5;  ///< of one model, are refined a little
 constexpr std::size_t kCoarseByWeight = 3;   ///< besides, whatever they look like
@@ -87,6 +92,8 @@ class Recogniser {
     result_.matches = static_cast<std::int64_t>(matches_.matches.size());
     shortlist();
     for_each(shortlist_.size(), [this](std::size_t i) { find_poses(i); });
+    choose_models();
+    for_each(shortlist_.size(), [this](std::size_t i) { look_closer(shortlist_[i]); });
     choose_poses();
     for_each(poses_.size(), [this](std::size_t i) { verify(poses_[i]); });
     rank();
@@ -120,13 +127,15 @@ class Recogniser {
     const RecognitionModel& model = listed.record;
     std::vector<TripletMatch> matches(matches_.matches.begin() + matches_.first[listed.model],
                                       matches_.matches.begin() + matches_.first[listed.model + 1]);
-    if (matches.size() > kMostMatches) {
+    const std::size_t most = std::min(kMostMatches, kMatchesTogether / shortlist_.size());
+    if (matches.size() > most) {
       const auto heavier = [](const TripletMatch& a, const TripletMatch& b) {
         return std::tie(b.weight, a.triangle, a.model_corners) <
                std::tie(a.weight, b.triangle, b.model_corners);
       };
-      std::ranges::nth_element(matches, matches.begin() + kMostMatches, heavier);
-      matches.resize(kMostMatches);
+      std::ranges::nth_element(matches, matches.begin() + static_cast<std::ptrdiff_t>(most),
+                               heavier);
+      matches.resize(most);
       std::ranges::sort(matches, heavier);
     }
     std::vector<kernels::PoseVote> votes;
@@ -137,10 +146,39 @@ class Recogniser {
                            kernels::feature_triangle(scene_.features, match.scene_corners)),
                        match.weight});
     listed.votes = kernels::PoseVotes(votes, model.centre.cast<double>(), model.diagonal);
-    for (const kernels::PoseCluster& cluster : listed.votes.clusters())
+    kernels::ClusterOptions clusters;
+    if (shortlist_.size() > kFewModels) clusters.most = kFewClusters;
+    if (shortlist_.size() > kFewModels) clusters.seeds = 4 * kFewClusters;
+    for (const kernels::PoseCluster& cluster : listed.votes.clusters(clusters))
       listed.poses.push_back({.listed = index, .pose = cluster.pose, .cluster = cluster.weight});
     look(listed, kGlanceSamples, kCoarse);
     keep(listed.poses, kGlanced, kCoarseByWeight);
+  }
+
+  /// Of many models only those that are worth a closer look.
+  void choose_models() {
+    if (shortlist_.size() <= kModelsByGlance + kModelsByWeight) return;
+    const auto most = [](const Listed& listed, double Pose::*value) {
+      double best = 0;
+      for (const Pose& pose : listed.poses) best = std::max(best, pose.*value);
+      return best;
+    };
+    std::vector<std::size_t> order(shortlist_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto sort_by = [&](std::size_t first, double Pose::*value) {
+      std::stable_sort(order.begin() + static_cast<std::ptrdiff_t>(first), order.end(),
+                       [&](std::size_t a, std::size_t b) {
+                         return most(shortlist_[a], value) > most(shortlist_[b], value);
+                       });
+    };
+    sort_by(0, &Pose::coarse);
+    sort_by(kModelsByGlance, &Pose::cluster);
+    for (std::size_t i = kModelsByGlance + kModelsByWeight; i < order.size(); ++i)
+      shortlist_[order[i]].poses.clear();
+  }
+
+  void look_closer(Listed& listed) {
+    const RecognitionModel& model = listed.record;
     look(listed, kCoarseSamples, kCoarse);
     keep(listed.poses, kCoarseByOverlap, kCoarseByWeight);
     for (Pose& pose : listed.poses)
