@@ -138,13 +138,22 @@ class Recogniser {
       matches.resize(most);
       std::ranges::sort(matches, heavier);
     }
+    // Here a match shares its triangle with others of this model only: what agrees on a pose must
+    // not depend on how many models the library has.
+    std::ranges::stable_sort(matches, {}, &TripletMatch::triangle);
     std::vector<kernels::PoseVote> votes;
     votes.reserve(matches.size());
-    for (const TripletMatch& match : matches)
-      votes.push_back({kernels::similarity_between(
-                           kernels::feature_triangle(model.features, match.model_corners),
-                           kernels::feature_triangle(scene_.features, match.scene_corners)),
-                       match.weight});
+    for (auto first = matches.begin(); first != matches.end();) {
+      const auto last = std::find_if(first, matches.end(), [&](const TripletMatch& match) {
+        return match.triangle != first->triangle;
+      });
+      const double weight = 1.0 / static_cast<double>(last - first);
+      for (; first != last; ++first)
+        votes.push_back({kernels::similarity_between(
+                             kernels::feature_triangle(model.features, first->model_corners),
+                             kernels::feature_triangle(scene_.features, first->scene_corners)),
+                         weight});
+    }
     listed.votes = kernels::PoseVotes(votes, model.centre.cast<double>(), model.diagonal);
     kernels::ClusterOptions clusters;
     if (shortlist_.size() > kFewModels) clusters.most = kFewClusters;
