@@ -273,7 +273,7 @@ class Recogniser {
     if (o.match <= 0) return 0;
     const double whole = o.closeness * o.match / (o.match + o.conflict);
     return std::sqrt(o.match) * std::pow(whole, 4) * std::pow(pose.explained, 0.1) *
-           (4 + pose.support) / (8 + pose.support);
+           (10 + pose.support) / (20 + pose.support);
   }
 
   Candidate candidate_of(const Pose& pose) const {
