@@ -86,7 +86,8 @@ SurfaceParameters parameters_from_json(const std::string& text) {
 }
 
 std::string to_json(const RecognitionParameters& parameters) {
-  return nlohmann::json{{"levels", parameters.levels},
+  return nlohmann::json{{"least_reach", parameters.least_reach},
+                        {"levels", parameters.levels},
                         {"most_features", parameters.most_features},
                         {"samples", parameters.samples},
                         {"torsion", parameters.torsion}}
@@ -97,6 +98,7 @@ RecognitionParameters recognition_parameters_from_json(const std::string& text) 
   try {
     const auto json = nlohmann::json::parse(text);
     RecognitionParameters parameters;
+    json.at("least_reach").get_to(parameters.least_reach);
     json.at("levels").get_to(parameters.levels);
     json.at("most_features").get_to(parameters.most_features);
     json.at("samples").get_to(parameters.samples);

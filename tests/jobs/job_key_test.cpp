@@ -33,8 +33,9 @@ TEST(JobKeyTest, OfTripletsChangesWithEverythingThatTheContentDependsOn) {
   EXPECT_TRUE(is_new(triplets_key("a.ply", "1235", {})));
   EXPECT_TRUE(is_new(triplets_key("a.ply", "1234", {.levels = 9})));
   EXPECT_TRUE(is_new(triplets_key("a.ply", "1234", {.most_features = 9})));
-  EXPECT_TRUE(is_new(triplets_key("a.ply", "1234", {.torsion = true})));
+  EXPECT_TRUE(is_new(triplets_key("a.ply", "1234", {.torsion = false})));
   EXPECT_TRUE(is_new(triplets_key("a.ply", "1234", {.samples = 9})));
+  EXPECT_TRUE(is_new(triplets_key("a.ply", "1234", {.least_reach = 0.5})));
   EXPECT_FALSE(is_new(triplets_key("a.ply", "1234", {})));
 }
 

@@ -118,10 +118,13 @@ std::vector<std::string> values_of(const JobRequest& request) {
 TEST(JobLineTest, EveryFieldOfARequestArrives) {
   JobRequest request;
   every_field_of_request(request, Distinct());
-  request.parameters = {
-      .surface = unusual_parameters(),
-      .recognition = {.levels = 7, .most_features = 17, .torsion = true, .samples = 170},
-      .search = {.method = RecognitionMethod::kThesis, .min_score = 0.123}};
+  request.parameters = {.surface = unusual_parameters(),
+                        .recognition = {.levels = 7,
+                                        .most_features = 17,
+                                        .torsion = false,
+                                        .samples = 170,
+                                        .least_reach = 0.17},
+                        .search = {.method = RecognitionMethod::kThesis, .min_score = 0.123}};
   request.job.kind = JobKind::kPartition;
   for (const JobRequest& sent : {request, JobRequest{}}) {
     const std::string line = to_line(sent);

@@ -136,10 +136,13 @@ TEST_F(RecogniseJobTest, WhatHasChangedMeanwhileIsRefused) {
 }
 
 TEST_F(RecogniseJobTest, ParametersThatAreUnknownAreRefused) {
-  for (const char* parameters :
-       {"", "none", "7", R"({"levels":3})",
-        R"({"levels":0,"most_features":400,"samples":4000,"torsion":false})",
-        R"({"levels":3,"most_features":400,"samples":4000,"torsion":false,"more":1})"}) {
+  std::string more = to_json(RecognitionParameters{});
+  more.insert(1, R"("more":1,)");
+  const std::string no_levels = to_json(RecognitionParameters{.levels = 0});
+  for (const std::string& parameters :
+       {std::string(), std::string("none"), std::string("7"), std::string(R"({"levels":3})"),
+        std::string(R"({"levels":3,"most_features":400,"samples":4000,"torsion":true})"), no_levels,
+        more}) {
     make_library(parameters);
     EXPECT_NE(refused().find("parameters that this version does not know"), std::string::npos)
         << parameters;
