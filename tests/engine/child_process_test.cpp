@@ -13,13 +13,12 @@
 #include <iterator>
 #include <map>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <system_error>
-#include <thread>
 
 #include "engine/descriptor.hpp"
 #include "engine/spawn.hpp"
+#include "tests/engine/children.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace semigeo::engine {
@@ -31,35 +30,10 @@ using Id = ChildProcesses::Id;
 using Limit = ChildProcesses::Limit;
 using Line = ChildProcesses::Line;
 using TimedOut = ChildProcesses::TimedOut;
-using Woken = ChildProcesses::Woken;
-
-constexpr double kLong = 60;  // a test that waits so long has failed
-
-Command shell(const std::string& script) {
-  Command command;
-  command.arguments = {"/bin/sh", "-c", script};
-  return command;
-}
-
-Command conversing(const std::string& script) {
-  Command command = shell(script);
-  command.converses = true;
-  return command;
-}
 
 std::string contents(const fs::path& path) {
   std::ifstream file(path);
   return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// The next event if it is what the test expects.
-template <class Expected>
-Expected next(ChildProcesses& children) {
-  const auto event = children.wait(kLong);
-  const auto* expected = std::get_if<Expected>(&event);
-  if (expected == nullptr)
-    throw std::runtime_error("an event of type " + std::to_string(event.index()));
-  return *expected;
 }
 
 Ended run(const Command& command) {
@@ -475,53 +449,6 @@ TEST(ChildProcess, ManyLeaveNothingBehind) {
     EXPECT_EQ(errno, ECHILD);
   }
   EXPECT_EQ(open_descriptors(), before);
-}
-
-TEST(ChildProcess, WaitTimesOut) {
-  ChildProcesses children;
-  EXPECT_TRUE(std::holds_alternative<TimedOut>(children.wait(0)));
-  const auto start = std::chrono::steady_clock::now();
-  EXPECT_TRUE(std::holds_alternative<TimedOut>(children.wait(0.05)));
-  EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(50));
-}
-
-TEST(ChildProcess, WakeEndsAWait) {
-  ChildProcesses children;
-  children.start(conversing("read forever"));
-  children.wake();  // before
-  children.wake();
-  next<Woken>(children);
-  EXPECT_TRUE(std::holds_alternative<TimedOut>(children.wait(0)));
-  std::thread other([&] { children.wake(); });
-  next<Woken>(children);
-  other.join();
-}
-
-TEST(ChildProcess, WakeEndsAWaitFromASignalHandler) {
-  static ChildProcesses* woken;
-  ChildProcesses children;
-  woken = &children;
-  const auto before = signal(SIGUSR2, [](int) { woken->wake(); });
-  children.start(shell("kill -USR2 " + std::to_string(getpid())));
-  bool has_woken = false;
-  for (bool ended = false; !ended || !has_woken;) {
-    const auto event = children.wait(kLong);
-    ASSERT_FALSE(std::holds_alternative<TimedOut>(event));
-    ended |= std::holds_alternative<Ended>(event);
-    has_woken |= std::holds_alternative<Woken>(event);
-  }
-  signal(SIGUSR2, before);
-}
-
-TEST(ChildProcess, WaitingTakesNoCpuTime) {
-  ChildProcesses children;
-  // Closes its ends and lives on: a hang-up must not be reported again and again.
-  const Id child = children.start(conversing("exec 0<&- 3>&-; exec sleep 1000"));
-  const std::clock_t before = std::clock();
-  EXPECT_TRUE(std::holds_alternative<TimedOut>(children.wait(0.5)));
-  EXPECT_LT(std::clock() - before, CLOCKS_PER_SEC / 10);
-  children.kill(child);
-  next<Ended>(children);
 }
 
 }  // namespace
