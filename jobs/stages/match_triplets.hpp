@@ -32,7 +32,7 @@ struct TripletMatches {
 struct MatchLimits {
   std::int64_t triangles = 60'000;
   std::int64_t compared = 3'000'000'000;  ///< pairs of triplets
-  std::int64_t matches = 4'000'000;  ///< as far as a few blocks of a large library tell beforehand
+  std::int64_t matches = 8'000'000;  ///< as far as a few blocks of a large library tell beforehand
 };
 
 /// Looks up the triplets of a scene, which must be sorted by cell. Reads only the blocks of the

@@ -21,7 +21,7 @@ using kernels::Similarity;
 
 /// A scene's feature may be a little out of the band that the model's is in.
 constexpr double kBandSlack = 1.075;
-constexpr std::size_t kShortlist = 200;            ///< models with the most votes
+constexpr std::size_t kShortlist = 400;            ///< models with the best votes
 constexpr std::size_t kMostMatches = 8000;         ///< of one model, the weightiest;
 constexpr std::size_t kMatchesTogether = 600'000;  ///< if there are many models, fewer of each
 
@@ -30,8 +30,8 @@ constexpr std::int64_t kGlanceSamples = 60;
 constexpr std::size_t kGlanced = 40;  ///< of one model, go on
 constexpr std::size_t kFewModels = 40;
 constexpr int kFewClusters = 24;             ///< of each of more models than that; and of these
-constexpr std::size_t kModelsByGlance = 30;  ///< go on: those that look best,
-constexpr std::size_t kModelsByWeight = 20;  ///< and those of the heaviest clusters besides
+constexpr std::size_t kModelsByGlance = 40;  ///< go on: those that look best,
+constexpr std::size_t kModelsByWeight = 30;  ///< and those of the heaviest clusters besides
 constexpr std::int64_t kCoarseSamples = 200;
 constexpr std::size_t kCoarseByOverlap = 5;  ///< of one model, are refined a little
 constexpr std::size_t kCoarseByWeight = 3;   ///< besides, whatever they look like
@@ -109,13 +109,22 @@ class Recogniser {
     });
   }
 
-  /// Models that got votes, those with the most first.
+  /// Models that got votes, those first that got the most beyond what chance gives a model with so
+  /// many triplets, in standard deviations.
   void shortlist() {
+    const std::vector<io::ModelInfo>& models = library_.models();
+    const double votes = std::accumulate(matches_.votes.begin(), matches_.votes.end(), 0.0);
+    const auto triplets = static_cast<double>(library_.posting_count());
+    std::vector<double> surplus(models.size());
     std::vector<std::int64_t> order;
-    for (std::size_t i = 0; i < matches_.votes.size(); ++i)
-      if (matches_.votes[i] > 0) order.push_back(static_cast<std::int64_t>(i));
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      if (matches_.votes[i] <= 0) continue;
+      const double chance = votes * static_cast<double>(models[i].triplets) / triplets;
+      surplus[i] = (matches_.votes[i] - chance) / std::sqrt(chance);
+      order.push_back(static_cast<std::int64_t>(i));
+    }
     std::ranges::stable_sort(order, std::ranges::greater(),
-                             [this](std::int64_t i) { return matches_.votes[i]; });
+                             [&](std::int64_t i) { return surplus[i]; });
     order.resize(std::min(order.size(), kShortlist));
     shortlist_.resize(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) shortlist_[i].model = order[i];
