@@ -39,6 +39,13 @@ LibraryPlace place_at(const std::string& library) {
   return place_of(fs::absolute(library).lexically_normal());
 }
 
+/// Of an archive its own one.
+std::string library_file(const std::string& file_or_archive) {
+  std::error_code ignored;
+  if (!fs::is_directory(file_or_archive, ignored)) return file_or_archive;
+  return place_of_archive(file_or_archive).library.string();
+}
+
 bool is_archive(const fs::path& path) {
   std::error_code ignored;
   return fs::is_directory(path / "scans", ignored);
@@ -194,7 +201,7 @@ void add_maker(CLI::App* parent, const char* name, const char* about, const char
   CLI::App* command = parent->add_subcommand(name, about);
   const bool is_build = std::string(name) == "build";
   if (!is_build)
-    command->add_option("library", options->library, "The library")
+    command->add_option("library", options->library, "The library, or an archive that has one")
         ->required()
         ->configurable(false);
   command->add_option(inputs, options->inputs, what)
@@ -209,8 +216,9 @@ void add_maker(CLI::App* parent, const char* name, const char* about, const char
         ->configurable(false);
   add_job_options(command, options->run);
   command->fallthrough();
-  command->callback([options, action, &exit_code] {
+  command->callback([options, action, is_build, &exit_code] {
     apply_words(options->run);
+    if (!is_build) options->library = library_file(options->library);
     exit_code = action(*options);
   });
 }
@@ -220,9 +228,13 @@ void add_reader(CLI::App* parent, const char* name, const char* about,
                 int (*action)(const LibraryOptions&), int& exit_code) {
   auto options = std::make_shared<LibraryOptions>();
   CLI::App* command = parent->add_subcommand(name, about);
-  command->add_option("library", options->library, "The library")->required();
+  command->add_option("library", options->library, "The library, or an archive that has one")
+      ->required();
   command->add_flag("--json", options->run.json, "As JSON");
-  command->callback([options, action, &exit_code] { exit_code = action(*options); });
+  command->callback([options, action, &exit_code] {
+    options->library = library_file(options->library);
+    exit_code = action(*options);
+  });
 }
 
 }  // namespace

@@ -50,6 +50,7 @@ class BuildTest(LibraryTest):
         self.assertEqual(set(self.jobs(document)), {("triplets", f"{i}.ply") for i in range(4)} |
                          {("partition", "000.part"), ("library", "library.h5")})
         self.assertEqual(self.names(self.library), [f"{i}.ply" for i in range(4)])
+        self.assertEqual(self.make("list", self.archive), self.make("list", self.library))
         self.assertGreater(self.make("list", self.library)["postings"], 100)
         self.assertFalse((self.parts / "partitions").exists())
         before = self.library.stat()
