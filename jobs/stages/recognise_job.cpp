@@ -26,14 +26,15 @@ kernels::RecognitionModel read_scene(const RecogniseJob& job,
     scene.repairs_json = scan.repairs_json;
     scene.vertices = scan.built.surface.vertex_count();
     scene.triangles = scan.built.surface.face_count();
-    return recognition_model(scan.built, parameters, context);
+    return recognition_model(scan.built, scene_parameters(parameters), context);
   }
   const io::Dataset dataset(job.scene);
   const io::LevelInfo level = dataset.level(0);
   scene.format = "dataset";
   scene.vertices = level.vertices;
   scene.triangles = level.triangles;
-  kernels::RecognitionModel model = recognition_model(dataset, parameters, context);
+  kernels::RecognitionModel model =
+      recognition_model(dataset, scene_parameters(parameters), context);
   if (io::xxh3_of_file(job.scene) != job.input_xxh3)
     throw io::Error(job.scene, "", "the file changed while it was read", "run again");
   return model;

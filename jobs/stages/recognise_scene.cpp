@@ -319,7 +319,6 @@ class Recogniser {
       if (left.empty() || left.front().score <= 0) return;
       const Pose best = left.front();
       result_.objects.push_back(candidate_of(best));
-      if (!options_.all_copies) return;
       const Listed& listed = shortlist_[best.listed];
       // A little more than what matches: rims of what is explained are nobody else's.
       const auto marks = kernels::explained(*listed.tree, listed.record.diagonal, best.pose,

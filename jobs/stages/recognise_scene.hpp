@@ -13,7 +13,6 @@ namespace semigeo::jobs {
 
 struct RecognitionOptions {
   double min_score = 0.18;  ///< below it a model is not in the scene; see bench/RECOGNITION.md
-  bool all_copies = true;   ///< look on after the first object, on what it leaves unexplained
 };
 
 /// A model and where it seems to be.

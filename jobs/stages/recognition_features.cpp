@@ -125,7 +125,7 @@ void evolve(const kernels::Surface& surface, const RecognitionParameters& parame
       levels = levels_of(fields.scale, model.diagonal, parameters);
       model.samples = kernels::sample_surface(fields.points, first.triangles, fields.normals,
                                               samples_of(first.triangles, parameters));
-      kernels::mark_rim(fields.points, first.triangles, model.samples);
+      if (parameters.rim) kernels::mark_rim(fields.points, first.triangles, model.samples);
     }
     const kernels::LevelFeatures found = find_features(evolving, fields, {}, context);
     add_level(
@@ -173,6 +173,7 @@ Triangles triangles_of(const std::vector<std::int64_t>& corners) {
 RecognitionParameters scene_parameters(const RecognitionParameters& of_models) {
   RecognitionParameters parameters = of_models;
   parameters.samples = 5 * of_models.samples;
+  parameters.rim = true;
   return parameters;
 }
 
@@ -209,7 +210,7 @@ kernels::RecognitionModel recognition_model(const io::Dataset& dataset,
   model.samples =
       kernels::sample_surface(points, triangles, vectors_of(dataset.read_floats(0, "normals")),
                               samples_of(triangles, parameters));
-  kernels::mark_rim(points, triangles, model.samples);
+  if (parameters.rim) kernels::mark_rim(points, triangles, model.samples);
   for (int level = 0; level < levels; ++level)
     add_level(
         level, dataset.level(level).scale, parameters,

@@ -16,6 +16,7 @@ struct RecognitionParameters {
   /// Fine scans have more levels, until sigma is this share of the diagonal: what another scan of
   /// the object shows at its first level must be among them, however much coarser that is.
   double least_reach = 0.015;
+  bool rim = false;  ///< mark samples near the boundary: of scenes; libraries do not store it
 };
 
 /// For a scene, of which a model may be a small part.
