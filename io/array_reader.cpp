@@ -1,5 +1,6 @@
 #include "io/array_reader.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <memory>
@@ -7,6 +8,7 @@
 namespace semigeo::io {
 namespace {
 
+constexpr std::int64_t kBytesAtOnce = 8 << 20;
 constexpr std::int64_t kBestDeflateRatio = 1032;  // of any deflate stream
 
 Hdf5File::Array open_checked(const Hdf5File& file, const std::string& path, int columns) {
@@ -27,6 +29,17 @@ void require_type(const Hdf5File::Array& array, ElementType type) {
   if (found != type)
     array.file().refuse(array.path(), "holds " + std::string(name_of(found)) + " instead of " +
                                           std::string(name_of(type)));
+}
+
+/// The rows of a chunk without padding, in a buffer of the size of a chunk.
+std::span<const std::byte> decoded(const Hdf5File::Array& array, std::int64_t index,
+                                   const EncodedChunk& chunk, std::byte* buffer) {
+  const ArrayShape& shape = array.shape();
+  const auto size = static_cast<std::size_t>(shape.chunk_bytes());
+  if (!decode_chunk(shape, chunk.bytes, chunk.filter_mask, {buffer, size}))
+    array.file().refuse(array.path() + ", chunk " + std::to_string(index),
+                        "its bytes do not match their checksum");
+  return {buffer, static_cast<std::size_t>(shape.rows_in_chunk(index) * shape.row_bytes())};
 }
 
 template <typename Stored, typename Result>
@@ -66,14 +79,28 @@ void for_each_chunk(const Hdf5File::Array& array,
                     const std::function<void(std::span<const std::byte>)>& use) {
   const ArrayShape& shape = array.shape();
   if (shape.rows == 0) return;
-  const auto size = static_cast<std::size_t>(shape.chunk_bytes());
-  const auto rows = std::make_unique_for_overwrite<std::byte[]>(size);
-  for (std::int64_t i = 0; i < shape.chunk_count(); ++i) {
-    const EncodedChunk chunk = array.read_chunk(i);
-    if (!decode_chunk(shape, chunk.bytes, chunk.filter_mask, {rows.get(), size}))
-      array.file().refuse(array.path() + ", chunk " + std::to_string(i),
-                          "its bytes do not match their checksum");
-    use({rows.get(), static_cast<std::size_t>(shape.rows_in_chunk(i) * shape.row_bytes())});
+  const auto buffer = std::make_unique_for_overwrite<std::byte[]>(shape.chunk_bytes());
+  for (std::int64_t i = 0; i < shape.chunk_count(); ++i)
+    use(decoded(array, i, array.read_chunk(i), buffer.get()));
+}
+
+void for_each_chunk(const Hdf5File::Array& array, const ForEach& for_each,
+                    const std::function<void(std::int64_t, std::span<const std::byte>)>& use) {
+  const ArrayShape& shape = array.shape();
+  if (!for_each) {
+    std::int64_t next = 0;
+    return for_each_chunk(array, [&](std::span<const std::byte> rows) { use(next++, rows); });
+  }
+  if (shape.rows == 0) return;
+  const std::int64_t at_once = std::max<std::int64_t>(kBytesAtOnce / shape.chunk_bytes(), 1);
+  for (std::int64_t first = 0; first < shape.chunk_count(); first += at_once) {
+    const std::int64_t count = std::min(at_once, shape.chunk_count() - first);
+    std::vector<EncodedChunk> chunks;  // HDF5 is for one thread at a time
+    for (std::int64_t i = 0; i < count; ++i) chunks.push_back(array.read_chunk(first + i));
+    for_each(count, [&](std::int64_t i) {
+      const auto buffer = std::make_unique_for_overwrite<std::byte[]>(shape.chunk_bytes());
+      use(first + i, decoded(array, first + i, chunks[i], buffer.get()));
+    });
   }
 }
 

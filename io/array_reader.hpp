@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "io/for_each.hpp"
 #include "io/hdf5_array.hpp"
 
 namespace semigeo::io {
@@ -15,6 +16,11 @@ namespace semigeo::io {
 /// wrong or that is missing. Memory: one chunk.
 void for_each_chunk(const Hdf5File::Array& array,
                     const std::function<void(std::span<const std::byte>)>& use);
+
+/// The same for chunks in any order, decoded and used by several threads at once: `use` is given
+/// the number of each, too. Memory: some chunks.
+void for_each_chunk(const Hdf5File::Array& array, const ForEach& for_each,
+                    const std::function<void(std::int64_t, std::span<const std::byte>)>& use);
 
 /// A whole array, row after row. Error unless it has this element type and number of columns, and
 /// its chunks can hold what its shape promises (checked before anything is allocated).

@@ -1,5 +1,7 @@
 #include "io/complete_file.hpp"
 
+#include <future>
+
 #include "io/error.hpp"
 
 namespace semigeo::io {
@@ -44,7 +46,9 @@ std::string complete_file(DigestedFile& digested, AtomicFile& target,
   file.flush();
   file.write_attribute("/", "complete", std::int64_t{1});
   file.close();
-  target.sync();
+  // If there is no room for another thread, get() syncs.
+  std::future<void> synced =
+      std::async(std::launch::async | std::launch::deferred, [&] { target.sync(); });
   try {
     if (verify(target.temporary_path()) != digest)
       throw Error(target.final_path(), "", "its digest is not that of what was written");
@@ -53,6 +57,7 @@ std::string complete_file(DigestedFile& digested, AtomicFile& target,
                 "what was just written reads back wrong (" + error.problem() + ")",
                 "check the disk and run again");
   }
+  synced.get();
   return digest;
 }
 

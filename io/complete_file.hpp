@@ -24,10 +24,10 @@ void write_format(DigestedFile& file, const FileFormat& format);
 /// Opens a file for reading; refuses other formats, other versions, and unfinished files.
 Hdf5File open_complete(const std::filesystem::path& path, const FileFormat& format);
 
-/// Ends a file that is written under the temporary name of `target`: the digest, `complete`, to the
-/// disk. Then `verify` reads it from the path that it is given, and returns the digest that it
-/// found stored. What it throws becomes an Error that names the final file. Returns the digest;
-/// `target` is left to be committed.
+/// Ends a file that is written under the temporary name of `target`: the digest, `complete`. Then
+/// `verify` reads it from the path that it is given, while it goes to the disk, and returns the
+/// digest that it found stored. What it throws becomes an Error that names the final file. Returns
+/// the digest; `target` is left to be committed.
 std::string complete_file(DigestedFile& file, AtomicFile& target,
                           const std::function<std::string(const std::filesystem::path&)>& verify);
 

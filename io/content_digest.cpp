@@ -40,12 +40,11 @@ std::string described(std::string_view kind, const std::string& path, ElementTyp
   return line + " ";
 }
 
-using Seen = std::function<void(const std::string&, std::span<const std::byte>)>;
-
 // Walks a file and enters what it reads.
 class Walk {
  public:
-  Walk(const Hdf5File& file, const Seen& seen) : file_(file), seen_(seen) {}
+  Walk(const Hdf5File& file, const SeenRows& seen, const ForEach& for_each)
+      : file_(file), seen_(seen), for_each_(for_each) {}
 
   std::string digest() {
     first_path_.emplace(file_.address("/"), "/");
@@ -88,16 +87,17 @@ class Walk {
                           array.virtual_pieces());
       return;
     }
-    std::vector<std::uint64_t> hashes;
-    for_each_chunk(array, [&](std::span<const std::byte> rows) {
-      hashes.push_back(xxh3_64(rows));
-      if (seen_) seen_(path, rows);
+    std::vector<std::uint64_t> hashes(array.shape().rows == 0 ? 0 : array.shape().chunk_count());
+    for_each_chunk(array, for_each_, [&](std::int64_t chunk, std::span<const std::byte> rows) {
+      hashes[chunk] = xxh3_64(rows);
+      if (seen_) seen_(path, chunk * array.shape().chunk_rows, rows);
     });
     digest_.add_array(path, array.shape(), hashes);
   }
 
   const Hdf5File& file_;
-  const Seen& seen_;
+  const SeenRows& seen_;
+  const ForEach& for_each_;
   std::map<std::uint64_t, std::string> first_path_;
   ContentDigest digest_;
 };
@@ -139,8 +139,8 @@ std::string ContentDigest::hex() const {
   return hex64(hash.high64) + hex64(hash.low64);
 }
 
-std::string content_digest(const Hdf5File& file, const Seen& seen) {
-  return Walk(file, seen).digest();
+std::string content_digest(const Hdf5File& file, const SeenRows& seen, const ForEach& for_each) {
+  return Walk(file, seen, for_each).digest();
 }
 
 void DigestedFile::create_group(const std::string& path) {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/for_each.hpp"
 #include "io/hdf5_array.hpp"
 
 namespace semigeo::io {
@@ -36,12 +37,15 @@ class ContentDigest {
   std::set<std::string> lines_;
 };
 
-/// The digest of what `file` holds, by reading all of it, one chunk in memory at a time. Error when
-/// a checksum is wrong or an object is none that a dataset uses. `seen` is given the rows of each
-/// chunk of each array as they go by, in order, and the array's path.
-std::string content_digest(
-    const Hdf5File& file,
-    const std::function<void(const std::string&, std::span<const std::byte>)>& seen = {});
+/// The path of an array, the first row of a chunk, and its rows.
+using SeenRows = std::function<void(const std::string&, std::int64_t, std::span<const std::byte>)>;
+
+/// The digest of what `file` holds, by reading all of it, one chunk in memory at a time, or some if
+/// `for_each` has several threads. Error when a checksum is wrong or an object is none that a
+/// dataset uses. `seen` is given each chunk of each array as it goes by: in order, or by several
+/// threads at once.
+std::string content_digest(const Hdf5File& file, const SeenRows& seen = {},
+                           const ForEach& for_each = {});
 
 /// An HDF5 file in the making that enters each object in the digest as it is written.
 class DigestedFile {

@@ -51,11 +51,29 @@ std::string Dataset::text(const char* name) const {
   return file_.read_attribute_as<std::string>("/", name);
 }
 
-LevelInfo Dataset::level(int level) const {
+std::string Dataset::existing(int level) const {
   if (level < 0 || level >= level_count_)
     throw Error(path(), level_path(level), "does not exist",
                 "the levels are 0 to " + std::to_string(level_count_ - 1));
-  const std::string path = level_path(level);
+  return level_path(level);
+}
+
+void Dataset::check_rows(const std::string& level, const LevelArray& array) const {
+  const std::string name = level + "/" + array.name;
+  const ArrayShape shape = file_.shape_of(name);
+  const char* const counted = array.per_triangle ? "/triangles" : "/points";
+  if (shape.type != array.type || shape.columns != array.columns ||
+      shape.rows != file_.shape_of(level + counted).rows)
+    file_.refuse(
+        name, "has not the type or shape that a level's " + std::string(array.name) + " must have");
+}
+
+double Dataset::scale(int level) const {
+  return file_.read_attribute_as<double>(existing(level), "scale");
+}
+
+LevelInfo Dataset::level(int level) const {
+  const std::string path = existing(level);
   LevelInfo info;
   info.iteration = file_.read_attribute_as<std::int64_t>(path, "iteration");
   info.step = file_.read_attribute_as<double>(path, "step");
@@ -70,40 +88,37 @@ LevelInfo Dataset::level(int level) const {
   for (const LevelArray& array : kLevelArrays) {
     if (array.presence == Presence::principal && !principal_) continue;
     if (array.presence == Presence::filled && !filled_) continue;
-    const std::string name = path + "/" + array.name;
-    const ArrayShape shape = file_.shape_of(name);
-    if (shape.type != array.type || shape.columns != array.columns ||
-        shape.rows != (array.per_triangle ? info.triangles : info.vertices))
-      file_.refuse(name, "has not the type or shape that a level's " + std::string(array.name) +
-                             " must have");
+    check_rows(path, array);
   }
   info.features = check_features(file_, path);
   return info;
 }
 
 std::vector<float> Dataset::read_floats(int level, std::string_view name) const {
-  this->level(level);
+  const std::string place = existing(level);
   const LevelArray* array = find_array(name);
   if (array == nullptr || array->type != ElementType::float32)
-    throw Error(path(), level_path(level) + "/" + std::string(name), "is no array of floats");
-  return io::read_floats(file_, level_path(level) + "/" + array->name, array->columns);
+    throw Error(path(), place + "/" + std::string(name), "is no array of floats");
+  check_rows(place, *array);
+  return io::read_floats(file_, place + "/" + array->name, array->columns);
 }
 
 std::vector<std::int64_t> Dataset::read_integers(int level, std::string_view name) const {
-  this->level(level);
+  const std::string place = existing(level);
   const LevelArray* array = find_array(name);
   if (array == nullptr || array->type == ElementType::float32)
-    throw Error(path(), level_path(level) + "/" + std::string(name), "is no array of integers");
-  return io::read_integers(file_, level_path(level) + "/" + array->name, array->columns);
+    throw Error(path(), place + "/" + std::string(name), "is no array of integers");
+  check_rows(place, *array);
+  return io::read_integers(file_, place + "/" + array->name, array->columns);
 }
 
-std::vector<kernels::Feature> Dataset::read_features(int level, kernels::FeatureKind kind) const {
-  return io::read_features(file_, level_path(level), kind, this->level(level).vertices);
+kernels::FeaturesByKind Dataset::read_features(int level) const {
+  const std::string place = existing(level);
+  return io::read_features(file_, place, file_.shape_of(place + "/points").rows);
 }
 
 kernels::SampledContours Dataset::read_contours(int level, kernels::FeatureKind kind) const {
-  this->level(level);
-  return io::read_contours(file_, level_path(level), kind);
+  return io::read_contours(file_, existing(level), kind);
 }
 
 Selection Dataset::selection() const {

@@ -40,14 +40,17 @@ class Dataset {
   bool has_filled() const { return filled_; }
   /// Attributes and sizes; Error if an array is missing or does not fit the others.
   LevelInfo level(int level) const;
+  /// The sigma of a level alone, in length units.
+  double scale(int level) const;
 
-  /// An array of a level, row after row: points and normals 3 N floats, the others N.
+  /// An array of a level, row after row: points and normals 3 N floats, the others N. Error if it
+  /// has not a row for each vertex, or for each triangle.
   std::vector<float> read_floats(int level, std::string_view name) const;
   /// triangles (3 F), source_vertex (N), part (N), vertex_filled (N), face_filled (F).
   std::vector<std::int64_t> read_integers(int level, std::string_view name) const;
 
-  /// Error also if a feature is at a vertex that the level does not have.
-  std::vector<kernels::Feature> read_features(int level, kernels::FeatureKind kind) const;
+  /// By kind. Error also if a feature is at a vertex that the level does not have.
+  kernels::FeaturesByKind read_features(int level) const;
   /// Contours K = 0 (gaussian) or H = 0 (mean). Error also if they are not one after the other,
   /// or a maximum is at a point that does not exist.
   kernels::SampledContours read_contours(int level, kernels::FeatureKind kind) const;
@@ -59,6 +62,9 @@ class Dataset {
 
  private:
   std::string text(const char* name) const;
+  /// The path of a level that exists.
+  std::string existing(int level) const;
+  void check_rows(const std::string& level, const LevelArray& array) const;
 
   Hdf5File file_;
   DatasetHeader header_;

@@ -83,6 +83,31 @@ std::array<Value, kinds> read_counts(const Hdf5File& file, const std::string& le
   return counts;
 }
 
+void check_type(const Hdf5File& file, const std::string& level, const Table& table) {
+  if (!table.fits(file.shape_of(table.path(level))))
+    file.refuse(table.path(level), "has not the type that this table must have");
+}
+
+template <std::size_t kinds>
+void check_counts(const Hdf5File& file, const std::string& level, const Table& table,
+                  const std::array<std::int64_t, kinds>& of_kind) {
+  std::int64_t left = file.shape_of(table.path(level)).rows;
+  for (const std::int64_t count : of_kind) {
+    if (count < 0 || count > left) left = -1;
+    if (left < 0) break;
+    left -= count;
+  }
+  if (left != 0) file.refuse(table.path(level), "has not the rows that the level counts");
+}
+
+std::array<std::int64_t, kFeatureKinds> read_feature_counts(const Hdf5File& file,
+                                                            const std::string& level) {
+  const auto counts = read_counts<std::int64_t, kFeatureKinds>(file, level, kFeatureCounts);
+  check_type(file, level, kFeatures);
+  check_counts(file, level, kFeatures, counts);
+  return counts;
+}
+
 template <typename Row>
 void check_kind(const Hdf5File& file, const std::string& path, const Row& row, std::int64_t index,
                 int kind) {
@@ -200,39 +225,32 @@ void write_features(DigestedFile& file, const std::string& level, const EncodedF
 
 FeatureCounts check_features(const Hdf5File& file, const std::string& level) {
   const FeatureCounts counts = {
-      .of_kind = read_counts<std::int64_t, kFeatureKinds>(file, level, kFeatureCounts),
+      .of_kind = read_feature_counts(file, level),
       .contours = read_counts<std::int64_t, kContourKinds>(file, level, kContourCounts),
       .contour_length = read_counts<double, kContourKinds>(file, level, kContourLengths)};
-  for (const Table& table : {kFeatures, kContours, kPoints})
-    if (!table.fits(file.shape_of(table.path(level))))
-      file.refuse(table.path(level), "has not the type that this table must have");
-  const auto check = [&](const Table& table, const auto& of_kind) {
-    std::int64_t left = file.shape_of(table.path(level)).rows;
-    for (const std::int64_t count : of_kind) {
-      if (count < 0 || count > left)
-        file.refuse(table.path(level), "has not the rows that the level counts");
-      left -= count;
-    }
-    if (left != 0) file.refuse(table.path(level), "has not the rows that the level counts");
-  };
-  check(kFeatures, counts.of_kind);
-  check(kContours, counts.contours);
+  check_type(file, level, kContours);
+  check_type(file, level, kPoints);
+  check_counts(file, level, kContours, counts.contours);
   return counts;
 }
 
-std::vector<Feature> read_features(const Hdf5File& file, const std::string& level,
-                                   kernels::FeatureKind kind, std::int64_t vertices) {
+kernels::FeaturesByKind read_features(const Hdf5File& file, const std::string& level,
+                                      std::int64_t vertices) {
   const std::string path = kFeatures.path(level);
+  const auto counts = read_feature_counts(file, level);
   const auto table = read_table<FeatureRow>(file, level, kFeatures);
-  const Rows rows = rows_of(check_features(file, level).of_kind, static_cast<int>(kind));
-  std::vector<Feature> features;
-  for (std::int64_t i = rows.begin; i < rows.end; ++i) {
-    check_kind(file, path, table[i], i, static_cast<int>(kind));
-    Feature& feature = features.emplace_back();
-    std::memcpy(static_cast<void*>(&feature), &table[i], kFeatureBytes);
-    if (feature.vertex < 0 || feature.vertex >= vertices)
-      file.refuse(path, "row " + std::to_string(i) + " is at vertex " +
-                            std::to_string(feature.vertex) + " of " + std::to_string(vertices));
+  kernels::FeaturesByKind features;
+  for (int kind = 0; kind < kFeatureKinds; ++kind) {
+    const Rows rows = rows_of(counts, kind);
+    features[kind].reserve(static_cast<std::size_t>(rows.end - rows.begin));
+    for (std::int64_t i = rows.begin; i < rows.end; ++i) {
+      check_kind(file, path, table[i], i, kind);
+      Feature& feature = features[kind].emplace_back();
+      std::memcpy(static_cast<void*>(&feature), &table[i], kFeatureBytes);
+      if (feature.vertex < 0 || feature.vertex >= vertices)
+        file.refuse(path, "row " + std::to_string(i) + " is at vertex " +
+                              std::to_string(feature.vertex) + " of " + std::to_string(vertices));
+    }
   }
   return features;
 }

@@ -93,10 +93,10 @@ void write_features(DigestedFile& file, const std::string& level, const EncodedF
 /// Reads attributes and shapes; Error if a table is missing or does not fit the counts.
 FeatureCounts check_features(const Hdf5File& file, const std::string& level);
 
-/// The features of one kind of a level that has so many vertices and passed check_features. Error
-/// if one is at a vertex that the level does not have, or among those of another kind.
-std::vector<kernels::Feature> read_features(const Hdf5File& file, const std::string& level,
-                                            kernels::FeatureKind kind, std::int64_t vertices);
+/// The features of a level, which has so many vertices, by kind. Error if the tables do not fit the
+/// counts, or one is at a vertex that the level does not have, or among those of another kind.
+kernels::FeaturesByKind read_features(const Hdf5File& file, const std::string& level,
+                                      std::int64_t vertices);
 
 /// The contours K = 0 (gaussian) or H = 0 (mean) of a level that passed check_features. Error if
 /// contours are not one after the other, from the first point to the last, or a maximum is at a

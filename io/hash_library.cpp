@@ -1,6 +1,7 @@
 #include "io/hash_library.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <memory>
 #include <mutex>
@@ -96,6 +97,7 @@ struct HashLibrary::State {
   std::vector<float> centres;
   std::vector<double> origins;
   std::vector<float> spacings;
+  std::vector<std::uint32_t> feature_counts;  ///< ModelInfo::features, close together
   std::vector<std::int64_t> feature_offsets;
   std::vector<std::int64_t> level_offsets;
   std::vector<std::int64_t> sample_offsets;
@@ -151,6 +153,7 @@ void HashLibrary::State::open_models() {
                  .features = feature_offsets[i + 1] - feature_offsets[i],
                  .samples = sample_offsets[i + 1] - sample_offsets[i],
                  .triplets = triplets[i]};
+    feature_counts.push_back(static_cast<std::uint32_t>(models[i].features));
     if (!std::isfinite(diagonals[i]) || !std::isfinite(spacings[i]) ||
         !Eigen::Vector3f(&centres[3 * i]).allFinite() ||
         !Eigen::Vector3d(&origins[3 * i]).allFinite())
@@ -180,7 +183,7 @@ void HashLibrary::State::check_posting(const Posting& posting, std::int64_t inde
     file.refuse(kPostings, "posting " + std::to_string(index) + " is of model " +
                                counted(posting.model, count));
   for (const std::uint16_t corner : posting.corners)
-    if (corner >= models[posting.model].features)
+    if (corner >= feature_counts[posting.model])
       file.refuse(kPostings, "posting " + std::to_string(index) + " refers to feature " +
                                  counted(corner, models[posting.model].features) + " of model " +
                                  std::to_string(posting.model));
@@ -308,59 +311,82 @@ kernels::RecognitionModel HashLibrary::read_model(std::int64_t model) const {
 
 namespace {
 
-/// Order, ranges and counts of all postings, as they go by.
+/// Order and counts of all postings, as blocks of them go by on any threads, in any order.
 class PostingCheck {
  public:
-  PostingCheck(const Hdf5File& file, std::span<const std::uint64_t> cells, std::size_t models)
-      : file_(file), cells_(cells), counts_(models) {}
+  PostingCheck(const Hdf5File& file, std::span<const std::uint64_t> cells, std::size_t models,
+               std::int64_t block_size)
+      : file_(file),
+        cells_(cells),
+        block_size_(static_cast<std::uint64_t>(block_size)),
+        ends_(static_cast<std::size_t>((cells.back() + block_size_ - 1) / block_size_)),
+        counts_(models) {}
 
-  void add(const Posting& posting) {
-    while (index_ >= cells_[cell_ + 1]) ++cell_;
-    if (index_ > cells_[cell_] && !in_order(last_, posting))
-      file_.refuse(kPostings, "posting " + std::to_string(index_) +
-                                  " is not behind the one before it in its cell");
-    last_ = posting;
-    ++counts_[posting.model];
-    ++index_;
+  /// The postings from `index` on.
+  void add(std::uint64_t index, std::span<const Posting> postings) {
+    ends_[index / block_size_] = {postings.front(), postings.back()};
+    std::uint64_t cell_end = 0;
+    for (std::size_t i = 0; i < postings.size(); ++i) {
+      const std::uint64_t here = index + i;
+      if (here < cell_end && !in_order(postings[i - 1], postings[i])) refuse(here);
+      if (here >= cell_end) cell_end = *std::ranges::upper_bound(cells_, here);
+      counts_[postings[i].model].fetch_add(1, std::memory_order_relaxed);
+    }
   }
-  std::int64_t index() const { return static_cast<std::int64_t>(index_); }
+
+  /// Once all have gone by: what lies between the blocks.
+  void finish() const {
+    for (std::size_t block = 1; block < ends_.size(); ++block)
+      if (!std::ranges::binary_search(cells_, block * block_size_) &&
+          !in_order(ends_[block - 1].last, ends_[block].first))
+        refuse(block * block_size_);
+  }
   std::int64_t count(std::size_t model) const { return counts_[model]; }
 
  private:
+  struct Ends {
+    Posting first;
+    Posting last;
+  };
+
   // A triangle is in a cell once.
   static bool in_order(const Posting& a, const Posting& b) {
     return a.model < b.model || (a.model == b.model && a.corners < b.corners);
   }
 
+  [[noreturn]] void refuse(std::uint64_t index) const {
+    file_.refuse(kPostings, "posting " + std::to_string(index) +
+                                " is not behind the one before it in its cell");
+  }
+
   const Hdf5File& file_;
   std::span<const std::uint64_t> cells_;
-  std::vector<std::int64_t> counts_;
-  std::size_t cell_ = 0;
-  std::uint64_t index_ = 0;
-  Posting last_;
+  std::uint64_t block_size_;
+  std::vector<Ends> ends_;  ///< of each block
+  std::vector<std::atomic<std::int64_t>> counts_;
 };
 
 }  // namespace
 
-void HashLibrary::verify() const {
+void HashLibrary::verify(const ForEach& for_each) const {
   const State& state = *state_;
   const std::lock_guard lock(state.mutex);
-  PostingCheck check(state.file, state.cells, state.models.size());
-  std::int64_t feature = 0;  // the next that goes by
-  const std::string found =
-      content_digest(state.file, [&](const std::string& path, std::span<const std::byte> rows) {
-        if (path == kPostings) {
-          for (const Posting& posting : unpacked<Posting>(rows, kPostingBytes)) {
-            state.check_posting(posting, check.index());
-            check.add(posting);
-          }
-        } else if (path == kFeatureArray.path) {
-          state.check_features(rows, feature);
-          feature += static_cast<std::int64_t>(rows.size() / kOrientedFeatureBytes);
-        } else if (path == kSamplePointArray.path || path == kLevelScaleArray.path) {
-          state.check_floats(rows, path);
-        }
-      });
+  PostingCheck check(state.file, state.cells, state.models.size(), block_size());
+  const auto look = [&](const std::string& path, std::int64_t first,
+                        std::span<const std::byte> rows) {
+    if (path == kPostings) {
+      const std::vector<Posting> postings = unpacked<Posting>(rows, kPostingBytes);
+      for (std::int64_t index = first; const Posting& posting : postings)
+        state.check_posting(posting, index++);
+      check.add(static_cast<std::uint64_t>(first), postings);
+    } else if (path == kFeatureArray.path) {
+      state.check_features(rows, first);
+    } else if (path == kSamplePointArray.path || path == kLevelScaleArray.path) {
+      state.check_floats(rows, path);
+    }
+  };
+  const std::string found = content_digest(state.file, look, for_each);
+  check.finish();
   for (std::size_t i = 0; i < state.models.size(); ++i)
     if (check.count(i) != state.models[i].triplets)
       state.file.refuse("/models/triplets", "model " + std::to_string(i) + " has " +

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "io/for_each.hpp"
 #include "kernels/recognition_model.hpp"
 
 namespace semigeo::io {
@@ -49,9 +50,9 @@ class HashLibrary {
   /// May be called by several threads at once.
   kernels::RecognitionModel read_model(std::int64_t model) const;
 
-  /// Reads everything against checksums and the digest; order, ranges and indices too. Memory: one
-  /// chunk. Other threads wait meanwhile.
-  void verify() const;
+  /// Reads everything against checksums and the digest; order, ranges and indices too. Memory: some
+  /// chunks. Threads that are none of for_each's wait meanwhile.
+  void verify(const ForEach& for_each = {}) const;
 
  private:
   struct State;

@@ -101,7 +101,8 @@ void HashLibraryWriter::write_small(const std::string& path, const ArrayView& vi
   file_.write_array(path, encode_array(view, Compression::deflate));
 }
 
-std::string HashLibraryWriter::finish(std::span<const std::uint64_t> cells) {
+std::string HashLibraryWriter::finish(std::span<const std::uint64_t> cells,
+                                      const ForEach& for_each) {
   if (std::cmp_not_equal(triplets_.size(), sizes_.models))
     throw std::invalid_argument("not as many models as was said");
   if (cells.size() != kernels::kTripletCells + 1)
@@ -133,9 +134,9 @@ std::string HashLibraryWriter::finish(std::span<const std::uint64_t> cells) {
               array_of(std::span<const std::int64_t>(sample_points_.offsets)));
   write_small("/cells", array_of(std::span(reinterpret_cast<const std::int64_t*>(cells.data()),
                                            cells.size())));
-  std::string digest = complete_file(file_, target_, [](const std::filesystem::path& path) {
+  std::string digest = complete_file(file_, target_, [&](const std::filesystem::path& path) {
     const HashLibrary written(path);
-    written.verify();
+    written.verify(for_each);
     return written.digest();
   });
   target_.commit();

@@ -46,7 +46,7 @@ class HashLibraryWriter {
   void write_model(const PackedModel& model, std::int64_t triplets);
 
   /// `cells`: as HashLibrary::cells. Returns the content digest.
-  std::string finish(std::span<const std::uint64_t> cells);
+  std::string finish(std::span<const std::uint64_t> cells, const ForEach& for_each = {});
 
  private:
   /// An array that is gathered row by row.

@@ -66,7 +66,7 @@ void PostingPartitionWriter::finish(std::span<const std::uint32_t> cell_counts) 
   head.number(header_.runs_hash);
   head.numbers(cell_counts);
   head.numbers(std::span<const std::uint64_t>(block_hashes_));
-  file_.finish(head);
+  file_.finish_unsynced(head);
 }
 
 PostingPartition::PostingPartition(const std::filesystem::path& path)
@@ -99,7 +99,9 @@ std::vector<std::byte> PostingPartition::read_block(std::int64_t block) const {
 }
 
 std::string posting_partition_key(const std::filesystem::path& path) {
-  return PostingPartition(path).header().job_key;
+  const PostingPartition partition(path);
+  for (std::int64_t block = 0; block < partition.blocks(); ++block) partition.read_block(block);
+  return partition.header().job_key;
 }
 
 }  // namespace semigeo::io

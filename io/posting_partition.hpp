@@ -24,7 +24,8 @@ struct PartitionHeader {
 std::uint64_t runs_hash(std::span<const std::uint64_t> content_hashes);
 
 /// Writes the postings of a range of shapes (io/LIBRARY.md), piece by piece; the file appears under
-/// its name when it is whole. Memory: two blocks.
+/// its name when it is whole, unless the power is cut meanwhile: what is removed as soon as the
+/// library is made is not forced to the disk. Memory: two blocks.
 class PostingPartitionWriter {
  public:
   PostingPartitionWriter(const std::filesystem::path& path, PartitionHeader header);
@@ -68,7 +69,7 @@ class PostingPartition {
 };
 
 /// The key of the job that made a partition; Error if the file is not a whole partition of this
-/// version.
+/// version, or damaged in any place: it reads all of it.
 std::string posting_partition_key(const std::filesystem::path& path);
 
 }  // namespace semigeo::io

@@ -1,5 +1,6 @@
 #include "io/triplet_run.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <tuple>
 
@@ -23,14 +24,17 @@ struct Row {
 };
 static_assert(sizeof(Row) == 24);
 
+constexpr const char* kNoFeature = "refers to a feature that does not exist";
+constexpr const char* kNotBehind = "is not behind the one before it";
+
 /// What is wrong with a triplet that comes after `last`, if anything.
 const char* problem_of(const Triplet& triplet, const Triplet* last, std::int64_t features) {
   if (triplet.cell >= kernels::kTripletCells) return "is in a cell that does not exist";
   for (const std::uint16_t corner : triplet.corners)
-    if (corner >= features) return "refers to a feature that does not exist";
+    if (corner >= features) return kNoFeature;
   if (last != nullptr &&
       std::tie(triplet.cell, triplet.corners) <= std::tie(last->cell, last->corners))
-    return "is not behind the one before it";
+    return kNotBehind;
   return nullptr;
 }
 
@@ -149,22 +153,28 @@ std::vector<Triplet> TripletRun::read_triplets(const ShapeRange& shapes) const {
   std::size_t i = 0;
   for (int shape = shapes.first; shape < shapes.end; ++shape) {
     const std::size_t end = offsets_[shape + 1] - first;
+    if (i == end) continue;
     const std::string place = "shape " + std::to_string(shape);
     if (xxh3_64(std::span(bytes).subspan(i * sizeof(Row), (end - i) * sizeof(Row))) !=
         shape_hashes_[shape])
       file_.refuse(place, "its bytes do not match their checksum");
-    for (; i < end; ++i) {
+    std::uint64_t last = 0;
+    for (const std::size_t begin = i; i < end; ++i) {
       Row row;
       std::memcpy(static_cast<void*>(&row), bytes.data() + i * sizeof row, sizeof row);
+      const auto refuse = [&](const char* problem) {
+        file_.refuse(place, "triplet " + std::to_string(first + i) + " " + problem);
+      };
+      const auto [a, b, c] = row.corners;
+      const std::uint64_t key =
+          std::uint64_t{row.codes} << 48 | std::uint64_t{a} << 32 | std::uint64_t{b} << 16 | c;
+      if (row.codes >= kCodeTriples) refuse("is in a cell of another shape");
+      if (std::max({a, b, c}) >= features_) refuse(kNoFeature);
+      if (i > begin && key <= last) refuse(kNotBehind);
+      last = key;
       triplets[i] = {.cell = static_cast<std::uint32_t>(shape * kCodeTriples + row.codes),
                      .invariants = row.invariants,
                      .corners = row.corners};
-      const char* problem =
-          row.codes >= kCodeTriples
-              ? "is in a cell of another shape"
-              : problem_of(triplets[i], i == 0 ? nullptr : &triplets[i - 1], features_);
-      if (problem != nullptr)
-        file_.refuse(place, "triplet " + std::to_string(first + i) + " " + problem);
     }
   }
   return triplets;

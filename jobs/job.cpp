@@ -15,12 +15,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string read_key(const Job& job) {
+std::string read_key(const Job& job, bool whole) {
   switch (job.kind) {
     case JobKind::kSurface:
       return io::read_origin(job.output).job_key;
     case JobKind::kTriplets:
-      return io::triplet_run_key(job.output);
+      return whole ? io::triplet_run_key(job.output) : io::TripletRun(job.output).job_key();
     case JobKind::kPartition:
       return io::posting_partition_key(job.output);
     case JobKind::kLibrary:
@@ -29,6 +29,16 @@ std::string read_key(const Job& job) {
       break;
   }
   return recognised_key(job.output);
+}
+
+std::string key_of(const Job& job, bool whole) {
+  std::error_code ignored;
+  if (!fs::exists(job.output, ignored)) return "";
+  try {
+    return read_key(job, whole);
+  } catch (const io::Error&) {
+    return "";
+  }
 }
 
 }  // namespace
@@ -85,13 +95,11 @@ fs::path partition_path(const fs::path& parts, int number) {
 }
 
 std::string output_key(const Job& job) {
-  std::error_code ignored;
-  if (!fs::exists(job.output, ignored)) return "";
-  try {
-    return read_key(job);
-  } catch (const io::Error&) {
-    return "";
-  }
+  return key_of(job, true);
+}
+
+std::string output_key_in_head(const Job& job) {
+  return key_of(job, false);
 }
 
 bool is_complete(const Job& job) {

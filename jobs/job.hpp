@@ -58,6 +58,8 @@ std::filesystem::path partition_path(const std::filesystem::path& parts, int num
 
 /// The key that the job's output carries; empty if there is none, or it cannot be read.
 std::string output_key(const Job& job);
+/// The same, but without a look at what checksums protect: for many runs at once.
+std::string output_key_in_head(const Job& job);
 
 /// Whether the output is there, made under the job's key; a dataset's sidecar beside it.
 bool is_complete(const Job& job);

@@ -24,7 +24,7 @@ constexpr double kLibrarySeconds = 1e-9;
 constexpr double kThesisMemory = 8;
 constexpr double kThesisSeconds = 5e-8;
 constexpr double kVerifySeconds = 0.5;  // poses
-constexpr std::uint64_t kBufferBytes = std::uint64_t{256} << 20;
+constexpr std::uint64_t kBufferBytes = std::uint64_t{512} << 20;
 constexpr std::uint64_t kLeastBufferBytes = std::uint64_t{8} << 20;
 
 /// Level 0 is smoothed as surface jobs do it, some levels only.

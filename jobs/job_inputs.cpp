@@ -13,9 +13,10 @@ namespace fs = std::filesystem;
 
 const std::string& JobInputs::key_of_run(const fs::path& run) {
   const auto [at, is_new] = run_keys_.try_emplace(run);
+  // Planning has read those that were there, and the others have been written just now.
   if (is_new)
-    at->second =
-        output_key({.kind = JobKind::kTriplets, .name = {}, .input = {}, .output = run, .key = {}});
+    at->second = output_key_in_head(
+        {.kind = JobKind::kTriplets, .name = {}, .input = {}, .output = run, .key = {}});
   return at->second;
 }
 

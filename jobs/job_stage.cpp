@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "jobs/job_key.hpp"
+
 namespace semigeo::jobs {
 namespace {
 
@@ -34,9 +36,15 @@ JobResult run_stage(const Job& job, const JobParameters& parameters,
                               .key = job.key},
                              parameters.surface, context);
     case JobKind::kTriplets:
-      return run_triplets_job(
-          {.dataset = job.input, .name = job.name, .output = job.output, .key = job.key},
-          parameters.recognition, context);
+      return run_triplets_job({.dataset = job.input,
+                               .name = job.name,
+                               .output = job.output,
+                               .key_of =
+                                   [&](const std::string& dataset_key) {
+                                     return triplets_key(job.name, dataset_key,
+                                                         parameters.recognition);
+                                   }},
+                              parameters.recognition, context);
     case JobKind::kPartition:
       return run_partition_job({.runs = runs_of(job),
                                 .shapes = job.shapes,

@@ -20,15 +20,6 @@ using Kind = Reason::Kind;
 
 constexpr const char* kArchiveLibrary = "library.h5";
 
-/// The key of a run without reading all of it, as output_key does.
-std::string header_key(const Job& job) {
-  try {
-    return io::TripletRun(job.output).job_key();
-  } catch (const io::Error&) {
-    return "";
-  }
-}
-
 PlannedJob triplets_of(const LibraryModel& model, const fs::path& parts,
                        const RecognitionParameters& parameters) {
   PlannedJob planned;
@@ -38,6 +29,7 @@ PlannedJob triplets_of(const LibraryModel& model, const fs::path& parts,
                  .output = run_path(parts, model.name),
                  .key = triplets_key(model.name, model.dataset_key, parameters)};
   if (model.maker) planned.after = {*model.maker};
+  planned.inputs_are_there = !model.maker;
   planned.error = model.error;
   return planned;
 }
@@ -154,7 +146,7 @@ void plan_library(std::vector<PlannedJob>& plan, const std::vector<LibraryModel>
   // While the library is what it should be, nobody is going to read its runs.
   for (const std::size_t triplets : after)
     if (plan[triplets].error.empty())
-      judge_output(plan[triplets], library.up_to_date ? header_key : output_key);
+      judge_output(plan[triplets], library.up_to_date ? output_key_in_head : output_key);
   for (const io::ShapeRange& shapes : partition_shapes(std::ssize(keys))) {
     PlannedJob partition;
     const fs::path output = partition_path(place.parts, library.job.partitions++);

@@ -127,7 +127,7 @@ class Executor {
         if (listener_ != nullptr) listener_->job_started(plan_[i]);
         fail(i, plan_[i].error);
       } else {
-        seconds_left_ += estimates_[i].seconds;
+        if (waits_for_[i] == 0) seconds_left_ += estimates_[i].seconds;
         pending_.push_back(i);
       }
     }
@@ -174,6 +174,10 @@ class Executor {
   bool has_inputs(std::size_t job) {
     PlannedJob& planned = plan_[job];
     if (planned.job.kind == JobKind::kSurface || outcomes_[job].attempts > 0) return true;
+    if (planned.inputs_are_there) {
+      remove_stale_run(planned.job);
+      return true;
+    }
     bool up_to_date = false;
     try {
       up_to_date = inputs_.settle(planned.job);
@@ -340,7 +344,10 @@ class Executor {
 
   void end(std::size_t job, JobState state) {
     outcomes_[job].state = state;
-    for (const std::size_t follower : followers_[job]) --waits_for_[follower];
+    for (const std::size_t follower : followers_[job])
+      if (--waits_for_[follower] == 0 && plan_[follower].error.empty() &&
+          !plan_[follower].up_to_date)
+        seconds_left_ += estimates_[follower].seconds;
     progress_.job_ended(state != JobState::kFailed, bytes_to_read(plan_[job]));
     if (listener_ != nullptr) listener_->job_ended(plan_[job], outcomes_[job]);
   }
@@ -371,7 +378,7 @@ class Executor {
   std::vector<std::size_t> waits_for_;               ///< so many jobs that have not ended
   std::vector<std::vector<std::size_t>> followers_;  ///< jobs that wait for this one
   std::vector<std::size_t> pending_;                 ///< the longest first
-  double seconds_left_ = 0;  ///< of one thread, for what is pending or running
+  double seconds_left_ = 0;  ///< of one thread, for what is running or waits for no other job
   std::map<ChildProcesses::Id, Running> running_;
   std::vector<ChildProcesses::Id> idle_;
   bool stopping_ = false;

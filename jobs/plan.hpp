@@ -20,10 +20,11 @@ struct PlannedJob {
   std::vector<std::size_t> after = {};  ///< places in the plan, before its own: of jobs that make
                                         ///< what it reads. When they have ended, it may begin
   bool up_to_date = false;
-  bool sidecar_only = false;    ///< it runs, but only to make the dataset's .xdmf again
-  std::vector<Reason> reasons;  ///< why it runs; none if it does not
-  std::string error;            ///< why it cannot even be planned (the scan is unreadable)
-  std::filesystem::path scan;   ///< surface: absolute path of the scan, for Sources
+  bool inputs_are_there = false;  ///< no look at them again when it begins: its key stands
+  bool sidecar_only = false;      ///< it runs, but only to make the dataset's .xdmf again
+  std::vector<Reason> reasons;    ///< why it runs; none if it does not
+  std::string error;              ///< why it cannot even be planned (the scan is unreadable)
+  std::filesystem::path scan;     ///< surface: absolute path of the scan, for Sources
 };
 
 /// "up to date", "would run" or "unreadable".

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <malloc.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -31,6 +32,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds kReportInterval{250};
+constexpr int kKeptMemory = 64 << 20;       // free bytes of the heap, from job to job
+constexpr int kLeastOwnMapping = 32 << 20;  // bytes of an allocation that is given back at once
 
 bool write_line(int descriptor, std::string line) {
   line += '\n';
@@ -94,38 +97,58 @@ class Reporter : public engine::Observer {
   Clock::time_point reported_ = Clock::now();
 };
 
-/// Sends standard output and error to a file while it lives.
-class OutputTo {
+/// The file that standard output and error go to while a job runs. If nobody printed anything, the
+/// next job's log is the same file under another name: making and removing one for each would cost
+/// more than many a job.
+class JobLog {
  public:
-  explicit OutputTo(const fs::path& log) : log_(log) {
-    if (log_.empty()) return;
+  JobLog() = default;
+  ~JobLog() {
     std::error_code ignored;
-    fs::create_directories(log_.parent_path(), ignored);
-    const engine::Descriptor file(
-        open(log_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
-    if (!file) {  // what a job prints is for people: it goes on without
-      log_.clear();
-      return;
-    }
+    if (file_) fs::remove(path_, ignored);
+  }
+  JobLog(const JobLog&) = delete;
+  JobLog& operator=(const JobLog&) = delete;
+
+  /// Nowhere else if the path is empty, or cannot be opened: what a job prints is for people.
+  void begin(const fs::path& path) {
+    if (path.empty() || (!take_over(path) && !open_anew(path))) return;
     std::fflush(nullptr);
     for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) {
       before_.emplace_back(fcntl(stream, F_DUPFD_CLOEXEC, 3));
-      dup2(file.get(), stream);
+      dup2(file_.get(), stream);
     }
   }
-  ~OutputTo() {
-    if (log_.empty()) return;
+
+  void end() {
+    if (before_.empty()) return;
     std::fflush(nullptr);
     for (const int stream : {STDOUT_FILENO, STDERR_FILENO})
       dup2(before_[stream - STDOUT_FILENO].get(), stream);
-    std::error_code ignored;
-    if (fs::file_size(log_, ignored) == 0) fs::remove(log_, ignored);
+    before_.clear();
+    struct stat status = {};
+    if (fstat(file_.get(), &status) != 0 || status.st_size != 0) file_ = {};
   }
-  OutputTo(const OutputTo&) = delete;
-  OutputTo& operator=(const OutputTo&) = delete;
 
  private:
-  fs::path log_;
+  bool take_over(const fs::path& path) {
+    if (!file_ || renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE) != 0)
+      return false;
+    path_ = path;
+    return true;
+  }
+
+  bool open_anew(const fs::path& path) {
+    std::error_code ignored;
+    if (file_) fs::remove(path_, ignored);
+    fs::create_directories(path.parent_path(), ignored);
+    file_ = engine::Descriptor(open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
+    path_ = path;
+    return static_cast<bool>(file_);
+  }
+
+  fs::path path_;
+  engine::Descriptor file_;  ///< none, or empty between jobs
   std::vector<engine::Descriptor> before_;
 };
 
@@ -196,12 +219,12 @@ double peak_bytes() {
   return 0;
 }
 
-JobReply do_job(const JobRequest& request, Reporter& reporter) {
+JobReply do_job(const JobRequest& request, JobLog& log, Reporter& reporter) {
   JobReply reply;
   const double cpu_before = process_usage().cpu_seconds;
   restart_peak();
   try {
-    const OutputTo log(request.log);
+    log.begin(request.log);
     limit_address_space(request.memory_bytes);
     simulate_fault(request);
     if (!request.sidecar_only || !remake_sidecar(request.job)) {
@@ -223,10 +246,11 @@ JobReply do_job(const JobRequest& request, Reporter& reporter) {
                   "; run again, or give --memory-per-job more if its " +
                   std::to_string(request.memory_bytes >> 20) + " MiB of memory were too little";
   }
+  log.end();
   limit_address_space(0);
   const double peak = peak_bytes();
-  // What the next job is allowed counts from what this process holds.
-  malloc_trim(0);
+  // What the next job is allowed counts from what this process holds; a little spares it much.
+  if (mallinfo2().fordblks > std::size_t{kKeptMemory}) malloc_trim(0);
   reply.worked = reporter.unreported();
   reply.cpu_seconds = process_usage().cpu_seconds - cpu_before;
   reply.peak_bytes = peak;
@@ -237,6 +261,10 @@ JobReply do_job(const JobRequest& request, Reporter& reporter) {
 
 int serve_jobs(int requests, int answers) {
   Lines lines(requests);
+  // Memory comes from the system as zeroed pages, one fault each: what is freed is soon used again.
+  mallopt(M_MMAP_THRESHOLD, kLeastOwnMapping);
+  mallopt(M_TRIM_THRESHOLD, kKeptMemory);
+  JobLog log;
   std::string line;
   while (lines.next(line)) {
     JobRequest request;
@@ -247,7 +275,7 @@ int serve_jobs(int requests, int answers) {
       return 2;
     }
     Reporter reporter(answers);
-    const JobReply reply = do_job(request, reporter);
+    const JobReply reply = do_job(request, log, reporter);
     if (!write_line(answers, to_line(reply))) return 0;  // nobody listens any more
   }
   return 0;

@@ -52,10 +52,13 @@ struct SampledContours {
   std::int64_t count() const { return static_cast<std::int64_t>(closed.size()); }
 };
 
+/// Indexed by FeatureKind.
+using FeaturesByKind = std::array<std::vector<Feature>, kFeatureKinds>;
+
 /// All that a level has of these.
 struct LevelFeatures {
-  std::array<std::vector<Feature>, kFeatureKinds> of_kind;  ///< by FeatureKind
-  std::array<SampledContours, kContourKinds> contours;      ///< of K = 0, of H = 0
+  FeaturesByKind of_kind;
+  std::array<SampledContours, kContourKinds> contours;  ///< of K = 0, of H = 0
 };
 
 }  // namespace semigeo::kernels

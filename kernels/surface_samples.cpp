@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "kernels/overlap.hpp"
+#include "kernels/radix_sort.hpp"
 #include "kernels/z_order.hpp"
 
 namespace semigeo::kernels {
@@ -32,19 +33,19 @@ std::vector<std::int32_t> along_curve(std::span<const Vector3f> points, Triangle
     high = high.cwiseMax(p);
   }
   const float cell = std::max((high - low).maxCoeff(), 1e-30F) / 1023;
-  std::vector<std::pair<std::uint64_t, std::int32_t>> keys;
+  std::vector<std::uint64_t> keys;  // place along the curve, face
   keys.reserve(triangles.size());
   for (const auto& [a, b, c] : triangles) {
     const Vector3f place = ((points[a] + points[b] + points[c]) / 3 - low) / cell;
     std::uint64_t key = 0;
     for (int axis = 0; axis < 3; ++axis)
       key |= spread_bits(static_cast<std::uint64_t>(place[axis])) << axis;
-    keys.emplace_back(key, static_cast<std::int32_t>(keys.size()));
+    keys.push_back(key << 32 | keys.size());
   }
-  std::ranges::sort(keys);
+  radix_sort(keys, 32, 62);
   std::vector<std::int32_t> order;
   order.reserve(keys.size());
-  for (const auto& [key, face] : keys) order.push_back(face);
+  for (const std::uint64_t key : keys) order.push_back(static_cast<std::int32_t>(key));
   return order;
 }
 
@@ -52,13 +53,17 @@ std::vector<std::int32_t> along_curve(std::span<const Vector3f> points, Triangle
 std::vector<std::array<std::int32_t, 2>> boundary_edges(Triangles triangles) {
   std::vector<std::uint64_t> edges;
   edges.reserve(3 * triangles.size());
+  std::int32_t vertices = 0;
   for (const auto& t : triangles)
     for (int i = 0; i < 3; ++i) {
       const auto [low, high] = std::minmax(t[i], t[(i + 1) % 3]);
       edges.push_back(std::uint64_t{static_cast<std::uint32_t>(low)} << 32 |
                       static_cast<std::uint32_t>(high));
+      vertices = std::max(vertices, high + 1);
     }
-  std::ranges::sort(edges);
+  const auto bits = static_cast<int>(std::bit_width(static_cast<std::uint32_t>(vertices)));
+  radix_sort(edges, 0, bits);
+  radix_sort(edges, 32, 32 + bits);
   std::vector<std::array<std::int32_t, 2>> single;
   for (std::size_t i = 0; i < edges.size();) {
     std::size_t j = i + 1;
@@ -80,16 +85,18 @@ Eigen::Vector2f spread_over_square(std::int64_t k) {
   return {fraction(n / kPlastic), fraction(n / (kPlastic * kPlastic))};
 }
 
-/// 0, 1, ..., count - 1 in an order whose beginnings are spread evenly: by reversed bits.
+/// Where 0, 1, ..., count - 1 come in an order whose beginnings are spread evenly: by reversed
+/// bits.
 std::vector<std::int64_t> evenly_begun(std::int64_t count) {
   const auto bits = static_cast<int>(std::bit_width(static_cast<std::uint64_t>(count - 1)));
-  std::vector<std::int64_t> order;
+  std::vector<std::int64_t> place(count);
+  std::int64_t next = 0;
   for (std::int64_t i = 0; i < std::int64_t{1} << bits; ++i) {
     std::int64_t reversed = 0;
     for (int bit = 0; bit < bits; ++bit) reversed |= ((i >> bit) & 1) << (bits - 1 - bit);
-    if (reversed < count) order.push_back(reversed);
+    if (reversed < count) place[reversed] = next++;
   }
-  return order;
+  return place;
 }
 
 }  // namespace
@@ -99,25 +106,29 @@ SurfaceSamples sample_surface(std::span<const Vector3f> points, Triangles triang
   SurfaceSamples samples;
   if (triangles.empty() || count <= 0) return samples;
   const std::vector<std::int32_t> order = along_curve(points, triangles);
-  std::vector<double> area_until;
-  area_until.reserve(order.size());
+  std::vector<double> areas;
+  areas.reserve(order.size());
   double area = 0;
   for (const std::int32_t face : order)
-    area_until.push_back(area += area_of(points, triangles[face]));
+    area += areas.emplace_back(area_of(points, triangles[face]));
   if (!(area > 0)) return samples;
   samples.spacing = static_cast<float>(std::sqrt(area / static_cast<double>(count)));
-  for (const std::int64_t k : evenly_begun(count)) {
+  samples.points.resize(count);
+  samples.normals.resize(count);
+  const std::vector<std::int64_t> place = evenly_begun(count);
+  std::size_t face = 0;
+  double area_until = areas.front();
+  for (std::int64_t k = 0; k < count; ++k) {
     const double at = (static_cast<double>(k) + 0.5) / static_cast<double>(count) * area;
-    const auto face = std::ranges::upper_bound(area_until, at) - area_until.begin();
-    const auto last = static_cast<std::ptrdiff_t>(order.size()) - 1;
-    const auto& [a, b, c] = triangles[order[std::min(face, last)]];
+    while (area_until <= at && face + 1 < order.size()) area_until += areas[++face];
+    const auto& [a, b, c] = triangles[order[face]];
     Eigen::Vector2f uv = spread_over_square(k);
     if (uv.sum() > 1) uv = Eigen::Vector2f::Ones() - uv;
     const auto mixed = [&](const Vector3f& p, const Vector3f& q, const Vector3f& r) -> Vector3f {
       return (1 - uv.sum()) * p + uv.x() * q + uv.y() * r;
     };
-    samples.points.push_back(mixed(points[a], points[b], points[c]));
-    samples.normals.push_back(mixed(normals[a], normals[b], normals[c]).stableNormalized());
+    samples.points[place[k]] = mixed(points[a], points[b], points[c]);
+    samples.normals[place[k]] = mixed(normals[a], normals[b], normals[c]).stableNormalized();
   }
   return samples;
 }

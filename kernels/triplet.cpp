@@ -2,8 +2,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <numeric>
 #include <utility>
 
 namespace semigeo::kernels {
@@ -32,7 +35,7 @@ struct Bytes {
   float high;
   constexpr float step() const { return (high - low) / 255; }
   std::uint8_t of(float value) const {
-    return static_cast<std::uint8_t>(std::lround(std::clamp((value - low) / step(), 0.0F, 255.0F)));
+    return static_cast<std::uint8_t>(0.5 + std::clamp((value - low) / step(), 0.0F, 255.0F));
   }
   /// In bytes, rounded down: both values have been rounded.
   constexpr std::uint8_t tolerance(float width) const {
@@ -114,6 +117,18 @@ struct Corner {
   std::uint8_t code;
 };
 
+/// The float interval of the squares of [low, high].
+struct SquaredBand {
+  float least;
+  float most;
+  SquaredBand(double low, double high)
+      : least(static_cast<float>(low * low)), most(static_cast<float>(high * high)) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    if (least < low * low) least = std::nextafter(least, kInfinity);
+    if (most > high * high) most = std::nextafter(most, -kInfinity);
+  }
+};
+
 class LevelTriplets {
  public:
   LevelTriplets(const OrientedFeatures& features, const TripletOptions& options,
@@ -125,56 +140,96 @@ class LevelTriplets {
     first_ = first;
     sigma_ = features_.level_scale[features_.features[first].level];
     corners_.clear();
+    for (std::vector<float>& axis : places_) axis.clear();
     for (std::size_t i = first; i < last; ++i) {
       const OrientedFeature& f = features_.features[i];
       corners_.push_back({f.position, f.normal, curvature_byte(f.scale_free_gaussian),
                           curvature_byte(f.scale_free_mean), f.code});
+      for (int axis = 0; axis < 3; ++axis) places_[axis].push_back(f.position[axis]);
     }
-    for (const std::uint64_t triangle : triangles())
-      enter({static_cast<std::uint16_t>(triangle >> 32), static_cast<std::uint16_t>(triangle >> 16),
-             static_cast<std::uint16_t>(triangle)});
+    find_neighbours();
+    number_.assign(corners_.size(), kNobody);
+    for (std::size_t i = 0; i < corners_.size(); ++i) enter_triangles_of(i);
   }
 
  private:
-  bool in_band(float squared) const {
-    const double nearest = options_.nearest * sigma_;
-    const double farthest = options_.farthest * sigma_;
-    return squared >= nearest * nearest && squared <= farthest * farthest;
+  using Neighbours = std::span<const std::uint16_t>;
+  static constexpr std::uint16_t kNobody = 0xffff;  // kMostFeatures is no index
+
+  Neighbours neighbours_of(std::size_t i) const {
+    return std::span(neighbours_)
+        .subspan(first_neighbour_[i], first_neighbour_[i + 1] - first_neighbour_[i]);
   }
 
-  /// The nearest ones within the band, the nearer first; of equals the earlier.
-  void find_neighbours(std::size_t of) {
-    near_.clear();
-    for (std::size_t j = 0; j < corners_.size(); ++j) {
-      const float squared = (corners_[j].position - corners_[of].position).squaredNorm();
-      if (in_band(squared)) near_.emplace_back(squared, static_cast<std::uint16_t>(j));
+  /// Of each feature the nearest ones within the band, the nearer first; of equals the earlier.
+  void find_neighbours() {
+    const SquaredBand band(options_.nearest * sigma_, options_.farthest * sigma_);
+    const std::size_t count = corners_.size();
+    const float* const x = places_[0].data();
+    const float* const y = places_[1].data();
+    const float* const z = places_[2].data();
+    squared_.resize(count);
+    neighbours_.clear();
+    first_neighbour_.assign(1, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t j = 0; j < count; ++j) {
+        const float dx = x[j] - x[i];
+        const float dy = y[j] - y[i];
+        const float dz = z[j] - z[i];
+        squared_[j] = dx * dx + (dy * dy + dz * dz);
+      }
+      near_.clear();
+      for (std::size_t j = 0; j < count; ++j)
+        if (squared_[j] >= band.least && squared_[j] <= band.most)
+          // Positive floats are in the order of their bits.
+          near_.push_back(std::uint64_t{std::bit_cast<std::uint32_t>(squared_[j])} << 32 | j);
+      const auto kept = std::min<std::size_t>(near_.size(), options_.neighbours);
+      std::ranges::partial_sort(near_, near_.begin() + static_cast<std::ptrdiff_t>(kept));
+      for (std::size_t k = 0; k < kept; ++k)
+        neighbours_.push_back(static_cast<std::uint16_t>(near_[k] & 0xffff));
+      first_neighbour_.push_back(neighbours_.size());
     }
-    const auto count = std::min<std::size_t>(near_.size(), options_.neighbours);
-    std::ranges::partial_sort(near_, near_.begin() + static_cast<std::ptrdiff_t>(count));
-    near_.resize(count);
   }
 
-  /// Each once, its corners ascending. Packed: numbers are sorted faster than arrays.
-  std::vector<std::uint64_t> triangles() {
-    std::vector<std::uint64_t> found;
+  /// Those of a feature and two of its neighbours that no feature before it has entered: one has
+  /// that is neighbour to this one and has the other two as its own neighbours.
+  void enter_triangles_of(std::size_t i) {
+    const Neighbours near = neighbours_of(i);
     const double nearest = options_.nearest * sigma_;
-    for (std::size_t i = 0; i < corners_.size(); ++i) {
-      find_neighbours(i);
-      for (std::size_t a = 0; a < near_.size(); ++a)
-        for (std::size_t b = a + 1; b < near_.size(); ++b) {
-          const std::uint16_t j = near_[a].second;
-          const std::uint16_t k = near_[b].second;
-          if ((corners_[j].position - corners_[k].position).squaredNorm() < nearest * nearest)
-            continue;
-          Corners triangle = {static_cast<std::uint16_t>(i), j, k};
-          std::ranges::sort(triangle);
-          found.push_back(packed(triangle));
-        }
+    for (std::size_t a = 0; a < near.size(); ++a) number_[near[a]] = static_cast<std::uint16_t>(a);
+    number_[i] = static_cast<std::uint16_t>(near.size());
+    const std::size_t width = near.size() + 1;
+    entered_.assign(near.size() * width, 0);
+    for (std::size_t a = 0; a < near.size(); ++a)
+      if (near[a] < i)
+        for (const std::uint16_t other : neighbours_of(near[a]))
+          if (number_[other] != kNobody) entered_[a * width + number_[other]] = 1;
+    const auto entered_by = [&](std::size_t a, std::size_t b) {
+      return entered_[a * width + near.size()] != 0 && entered_[a * width + b] != 0;
+    };
+    for (std::size_t a = 0; a < near.size(); ++a)
+      for (std::size_t b = a + 1; b < near.size(); ++b) {
+        const std::uint16_t j = near[a];
+        const std::uint16_t k = near[b];
+        if (entered_by(a, b) || entered_by(b, a) ||
+            (corners_[j].position - corners_[k].position).squaredNorm() < nearest * nearest)
+          continue;
+        Corners triangle = {static_cast<std::uint16_t>(i), j, k};
+        order(triangle, [](std::uint16_t one, std::uint16_t other) { return one < other; });
+        enter(triangle);
+      }
+    for (const std::uint16_t j : near) number_[j] = kNobody;
+    number_[i] = kNobody;
+  }
+
+  /// Three in order; equal ones stay as they are.
+  template <typename Value, typename Before>
+  static void order(std::array<Value, 3>& three, const Before& before) {
+    if (before(three[1], three[0])) std::swap(three[0], three[1]);
+    if (before(three[2], three[1])) {
+      std::swap(three[1], three[2]);
+      if (before(three[1], three[0])) std::swap(three[0], three[1]);
     }
-    std::ranges::sort(found);
-    const auto rest = std::ranges::unique(found);
-    found.erase(rest.begin(), rest.end());
-    return found;
   }
 
   /// Length of the side opposite to each corner.
@@ -185,14 +240,16 @@ class LevelTriplets {
     return {length(1, 2), length(2, 0), length(0, 1)};
   }
 
-  void enter(Corners triangle) {
+  void enter(const Corners& triangle) {
     const std::array<float, 3> all = sides(triangle);
-    std::array<int, 3> order = {0, 1, 2};
-    std::ranges::stable_sort(order, std::ranges::greater(), [&](int i) { return all[i]; });
     const auto enter_in = [&](const std::array<int, 3>& o) {
       enter({triangle[o[0]], triangle[o[1]], triangle[o[2]]}, {all[o[0]], all[o[1]], all[o[2]]});
     };
-    if (!options_.every_order) return enter_in(order);
+    if (!options_.every_order) {
+      std::array<int, 3> longest_first = {0, 1, 2};
+      order(longest_first, [&](int one, int other) { return all[one] > all[other]; });
+      return enter_in(longest_first);
+    }
     std::array<int, 3> permuted = {0, 1, 2};
     do {
       // What the other side measured as shorter may be longer here, within the tolerance.
@@ -249,8 +306,43 @@ class LevelTriplets {
   std::size_t first_ = 0;
   float sigma_ = 1;
   std::vector<Corner> corners_;
-  std::vector<std::pair<float, std::uint16_t>> near_;
+  std::array<std::vector<float>, 3> places_;  ///< of the corners, axis by axis
+  std::vector<std::uint16_t> neighbours_;
+  std::vector<std::size_t> first_neighbour_;
+  // Of the feature at hand:
+  std::vector<float> squared_;         ///< distances from it
+  std::vector<std::uint64_t> near_;    ///< what lies in the band: squared distance, feature
+  std::vector<std::uint16_t> number_;  ///< which of its neighbours each feature is
+  std::vector<std::uint8_t> entered_;  ///< whether an earlier neighbour has another, or itself
 };
+
+/// By cell, then corners.
+std::vector<Triplet> sorted(const std::vector<Triplet>& triplets) {
+  struct Key {
+    std::uint64_t codes_and_corners;
+    std::uint32_t index;
+  };
+  std::vector<std::uint32_t> next(kShapes + 1);
+  for (const Triplet& t : triplets) ++next[t.cell / kCodeTriples + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<Key> keys(triplets.size());
+  for (std::uint32_t i = 0; i < triplets.size(); ++i) {
+    const Triplet& t = triplets[i];
+    const std::uint64_t codes = t.cell % kCodeTriples;
+    keys[next[t.cell / kCodeTriples]++] = {codes << 48 | packed(t.corners), i};
+  }
+  auto first = keys.begin();
+  for (int shape = 0; shape < kShapes; ++shape) {
+    const auto last = keys.begin() + next[shape];
+    std::sort(first, last,
+              [](const Key& a, const Key& b) { return a.codes_and_corners < b.codes_and_corners; });
+    first = last;
+  }
+  std::vector<Triplet> result;
+  result.reserve(triplets.size());
+  for (const Key& key : keys) result.push_back(triplets[key.index]);
+  return result;
+}
 
 }  // namespace
 
@@ -265,8 +357,7 @@ std::vector<Triplet> local_triplets(const OrientedFeatures& features,
     level.add(first, last);
     first = last;
   }
-  std::ranges::sort(result, {}, [](const Triplet& t) { return std::pair(t.cell, t.corners); });
-  return result;
+  return sorted(result);
 }
 
 std::vector<std::uint32_t> cells_around(std::uint32_t cell) {

@@ -52,12 +52,11 @@ void require_level(const io::Dataset& dataset, int level) {
 
 void export_features(const io::Dataset& dataset, const ExportOptions& options,
                      OutputFormat format) {
-  std::array<std::vector<kernels::Feature>, kFeatureKinds> features;
+  const auto features = dataset.read_features(options.level);
   std::vector<io::FeaturesView> tables;
   std::size_t count = 0;
   for (int kind = 0; kind < kFeatureKinds; ++kind) {
     if (options.features != "all" && options.features != kFeatureKindNames[kind]) continue;
-    features[kind] = dataset.read_features(options.level, FeatureKind(kind));
     tables.push_back({FeatureKind(kind), features[kind]});
     count += features[kind].size();
   }

@@ -6,6 +6,7 @@
 
 #include "engine/stopwatch.hpp"
 #include "io/error.hpp"
+#include "io/hash_library_format.hpp"
 #include "io/hash_library_writer.hpp"
 #include "io/posting_partition.hpp"
 #include "io/triplet_run.hpp"
@@ -86,71 +87,81 @@ std::vector<std::uint64_t> cells_of(const std::deque<io::PostingPartition>& part
   return cells;
 }
 
-/// The postings of all partitions, one after the other.
-class PostingStream {
+/// Rows of all partitions, one after the other.
+class PartitionRows {
  public:
-  explicit PostingStream(const std::deque<io::PostingPartition>& partitions)
-      : partition_(partitions.begin()), end_(partitions.end()) {}
-
-  /// The next `bytes` of them, fewer only at the end.
-  std::vector<std::byte> take(std::size_t bytes) {
-    while (ahead_.size() - taken_ < bytes && partition_ != end_) {
-      if (block_ == partition_->blocks()) {
-        ++partition_;
-        block_ = 0;
-        continue;
-      }
-      ahead_.erase(ahead_.begin(), ahead_.begin() + static_cast<std::ptrdiff_t>(taken_));
-      taken_ = 0;
-      const std::vector<std::byte> rows = partition_->read_block(block_++);
-      ahead_.insert(ahead_.end(), rows.begin(), rows.end());
+  explicit PartitionRows(const std::deque<io::PostingPartition>& partitions) {
+    for (const io::PostingPartition& partition : partitions) {
+      if (partition.postings() == 0) continue;
+      parts_.push_back({&partition, end_});
+      end_ += partition.postings();
     }
-    const auto begin = ahead_.begin() + static_cast<std::ptrdiff_t>(taken_);
-    bytes = std::min(bytes, ahead_.size() - taken_);
-    taken_ += bytes;
-    return {begin, begin + static_cast<std::ptrdiff_t>(bytes)};
+  }
+
+  /// Those from `first` to `last` - 1, or to the end. Thread-safe.
+  std::vector<std::byte> read(std::int64_t first, std::int64_t last) const {
+    last = std::min(last, end_);
+    std::vector<std::byte> rows;
+    rows.reserve(static_cast<std::size_t>(last - first) * io::kPostingBytes);
+    auto part = std::ranges::upper_bound(parts_, first, {}, &Part::first) - 1;
+    for (std::int64_t at = first; at < last;) {
+      if (at == part->first + part->partition->postings()) ++part;
+      const std::int64_t block = (at - part->first) / io::kBlockPostings;
+      const std::int64_t block_first = part->first + block * io::kBlockPostings;
+      const std::vector<std::byte> all = part->partition->read_block(block);
+      const auto row = [&](std::int64_t index) {
+        return all.begin() + (index - block_first) * static_cast<std::int64_t>(io::kPostingBytes);
+      };
+      const std::int64_t stop =
+          std::min(last, block_first + static_cast<std::int64_t>(all.size() / io::kPostingBytes));
+      rows.insert(rows.end(), row(at), row(stop));
+      at = stop;
+    }
+    return rows;
   }
 
  private:
-  std::deque<io::PostingPartition>::const_iterator partition_;
-  std::deque<io::PostingPartition>::const_iterator end_;
-  std::int64_t block_ = 0;
-  std::vector<std::byte> ahead_;
-  std::size_t taken_ = 0;
+  struct Part {
+    const io::PostingPartition* partition;
+    std::int64_t first;
+  };
+  std::vector<Part> parts_;
+  std::int64_t end_ = 0;
 };
 
 void write_postings(const std::deque<io::PostingPartition>& partitions, std::int64_t memory,
                     io::HashLibraryWriter& writer, engine::Workers& workers) {
   const io::ArrayShape& shape = writer.posting_shape();
-  const auto block_bytes = static_cast<std::size_t>(shape.chunk_bytes());
-  // Of each block there are its rows and its stored form.
+  // Of each block there are its rows and its stored form, and that of one before it.
   const std::int64_t at_once =
-      std::clamp<std::int64_t>(memory / 4 / shape.chunk_bytes(), 1, 4 * workers.threads());
-  PostingStream stream(partitions);
-  for (std::int64_t first = 0; first < shape.chunk_count(); first += at_once) {
-    const std::int64_t count = std::min(at_once, shape.chunk_count() - first);
-    std::vector<std::vector<std::byte>> rows;
-    for (std::int64_t i = 0; i < count; ++i) rows.push_back(stream.take(block_bytes));
-    std::vector<io::EncodedChunk> blocks(rows.size());
-    workers.for_blocks(count, 1, [&](engine::IndexRange range) {
-      for (auto i = range.begin; i < range.end; ++i) blocks[i] = io::encode_rows(shape, rows[i]);
-    });
-    for (const io::EncodedChunk& block : blocks) writer.write_block(block);
-  }
+      std::clamp<std::int64_t>(memory / 6 / shape.chunk_bytes(), 1, 4 * workers.threads());
+  const PartitionRows rows(partitions);
+  make_and_write(
+      shape.rows == 0 ? 0 : shape.chunk_count(), at_once, workers,
+      [&](std::int64_t block) {
+        const std::int64_t first = block * shape.chunk_rows;
+        return io::encode_rows(shape, rows.read(first, first + shape.chunk_rows));
+      },
+      [&](const io::EncodedChunk& block) { writer.write_block(block); });
 }
 
 void write_models(const LibraryJob& job, const RunTotals& runs, std::int64_t memory,
                   io::HashLibraryWriter& writer, engine::Workers& workers) {
-  for (const engine::IndexRange batch :
-       batches_of(runs.bytes, std::min<std::int64_t>(memory / 4, std::int64_t{16} << 20))) {
-    std::vector<io::PackedModel> models(static_cast<std::size_t>(batch.end - batch.begin));
-    workers.for_blocks(batch.end - batch.begin, 8, [&](engine::IndexRange range) {
-      for (auto i = range.begin; i < range.end; ++i)
-        models[i] = io::TripletRun(job.runs[batch.begin + i]).read_packed_model();
-    });
-    for (std::size_t i = 0; i < models.size(); ++i)
-      writer.write_model(models[i], runs.triplets[batch.begin + i]);
-  }
+  using Models = std::vector<io::PackedModel>;
+  const std::vector<engine::IndexRange> batches =
+      batches_of(runs.bytes, std::min<std::int64_t>(memory / 32, std::int64_t{2} << 20));
+  std::size_t model = 0;
+  make_and_write(
+      std::ssize(batches), 8, workers,
+      [&](std::int64_t batch) {
+        Models models;
+        for (auto i = batches[batch].begin; i < batches[batch].end; ++i)
+          models.push_back(io::TripletRun(job.runs[i]).read_packed_model());
+        return models;
+      },
+      [&](const Models& models) {
+        for (const io::PackedModel& one : models) writer.write_model(one, runs.triplets[model++]);
+      });
 }
 
 }  // namespace
@@ -172,7 +183,11 @@ LibraryJobResult run_library_job(const LibraryJob& job, const engine::RunContext
   const engine::Stopwatch stopwatch(context.observer, "verification");
   return {.models = runs.sizes.models,
           .postings = runs.sizes.postings,
-          .digest = writer.finish(cells_of(partitions))};
+          .digest = writer.finish(cells_of(partitions), [&](std::int64_t count, const auto& body) {
+            context.workers.for_blocks(count, 1, [&](engine::IndexRange range) {
+              for (auto i = range.begin; i < range.end; ++i) body(i);
+            });
+          })};
 }
 
 }  // namespace semigeo::jobs

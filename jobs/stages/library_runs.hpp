@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/parallel.hpp"
@@ -23,5 +25,28 @@ std::vector<engine::IndexRange> batches_of(std::span<const std::int64_t> sizes,
 
 /// What PartitionJob and LibraryJob mean by their memory_bytes: 512 MiB by 0.
 std::int64_t memory_or_default(std::int64_t memory_bytes);
+
+/// Calls make(i) for all i < count on several threads and write(result) in the order of i on one at
+/// a time, as HDF5 needs it, `at_once` of them: while some are written, the next ones are made.
+template <typename Make, typename Write>
+void make_and_write(std::int64_t count, std::int64_t at_once, engine::Workers& workers,
+                    const Make& make, const Write& write) {
+  using Made = decltype(make(std::int64_t{}));
+  std::vector<Made> ready;
+  std::int64_t next = 0;
+  while (next < count || !ready.empty()) {
+    const std::int64_t making = std::min(at_once, count - next);
+    std::vector<Made> made(static_cast<std::size_t>(making));
+    workers.for_blocks(making + 1, 1, [&](engine::IndexRange range) {
+      for (auto i = range.begin; i < range.end; ++i)
+        if (i > 0)
+          made[i - 1] = make(next + i - 1);
+        else
+          for (const Made& one : ready) write(one);
+    });
+    ready = std::move(made);
+    next += making;
+  }
+}
 
 }  // namespace semigeo::jobs

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstring>
+#include <memory>
 #include <mutex>
 #include <numeric>
 #include <utility>
@@ -42,6 +43,7 @@ static_assert(sizeof(Entry) == 28 && offsetof(Entry, model) == offsetof(kernels:
               offsetof(Entry, codes) == io::kPostingBytes);
 
 constexpr std::int64_t kSortBytes = sizeof(Entry) + io::kPostingBytes;  // of each posting
+constexpr std::int64_t kSortedBytes = 1 << 20;                          // at once, by a thread
 constexpr std::int64_t kReadBytes = sizeof(Triplet) + 24;
 
 /// Cells that are sorted at once: all of some shapes, or some of one shape.
@@ -81,8 +83,8 @@ class PartitionBuild {
       if (slice.postings > capacity_) {
         stream(slice, writer);
       } else {
-        const std::vector<Entry> entries = gather(slice);
-        writer.add(sorted(slice, entries));
+        const std::unique_ptr<Entry[]> entries = gather(slice);
+        write_sorted(slice, {entries.get(), static_cast<std::size_t>(slice.postings)}, writer);
       }
       result.postings += slice.postings;
     }
@@ -158,39 +160,87 @@ class PartitionBuild {
     }
   }
 
-  // Shape after shape; those of a shape in the order of models, as runs come.
-  std::vector<Entry> gather(const Slice& slice) {
+  /// A run's triplets of a slice, and how many there are of each shape; later where those go.
+  struct RunPart {
+    std::vector<Triplet> triplets;
+    std::vector<std::size_t> of_shape;
+  };
+
+  // Shape after shape; those of a shape in the order of models.
+  std::unique_ptr<Entry[]> gather(const Slice& slice) {
     const io::ShapeRange shapes = slice.shapes();
-    std::vector<std::size_t> next(shapes.end - shapes.first);  // only one if it is part of a shape
-    std::exclusive_scan(shape_counts_.begin() + shapes.first, shape_counts_.begin() + shapes.end,
-                        next.begin(), std::size_t{0});
-    std::vector<Entry> entries(static_cast<std::size_t>(slice.postings));
-    std::int64_t found = 0;
-    for_each_triplet(slice, [&](const Triplet& triplet, std::size_t model) {
-      std::size_t& at = next[triplet.cell / kCodeTriples - shapes.first];
-      if (at < entries.size()) entries[at] = Entry(triplet, model);
-      ++at;
-      ++found;
-    });
-    if (found != slice.postings)
-      throw io::Error(job_.output, "", "the runs changed while they were read", "run again");
+    const std::size_t shape_count = shapes.end - shapes.first;
+    const std::vector<std::size_t> begin = begin_of_shapes(slice);
+    std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+    auto entries =
+        std::make_unique_for_overwrite<Entry[]>(static_cast<std::size_t>(slice.postings));
+    for (const engine::IndexRange batch : batches_) {
+      std::vector<RunPart> parts(static_cast<std::size_t>(batch.end - batch.begin));
+      for_each_part(parts, [&](RunPart& part, std::size_t i) {
+        part.triplets = io::TripletRun(job_.runs[batch.begin + i]).read_triplets(shapes);
+        std::erase_if(part.triplets, [&](const Triplet& triplet) { return !slice.has(triplet); });
+        part.of_shape.resize(shape_count);
+        for (const Triplet& triplet : part.triplets)
+          ++part.of_shape[triplet.cell / kCodeTriples - shapes.first];
+      });
+      for (RunPart& part : parts)
+        for (std::size_t shape = 0; shape < shape_count; ++shape)
+          next[shape] += std::exchange(part.of_shape[shape], next[shape]);
+      for (std::size_t shape = 0; shape < shape_count; ++shape)
+        if (next[shape] > begin[shape + 1]) refuse_changed();
+      for_each_part(parts, [&](const RunPart& part, std::size_t i) {
+        std::vector<std::size_t> at = part.of_shape;
+        for (const Triplet& triplet : part.triplets)
+          entries[at[triplet.cell / kCodeTriples - shapes.first]++] =
+              Entry(triplet, static_cast<std::size_t>(batch.begin) + i);
+      });
+    }
+    if (!std::equal(next.begin(), next.end(), begin.begin() + 1)) refuse_changed();
     return entries;
   }
 
-  // Packed postings by cell: a counting sort, which keeps the order of models, in each shape.
-  std::vector<std::byte> sorted(const Slice& slice, std::span<const Entry> entries) {
-    std::vector<std::byte> rows(entries.size() * io::kPostingBytes);
-    const io::ShapeRange shapes = slice.shapes();
-    workers_.for_blocks(shapes.end - shapes.first, 1, [&](engine::IndexRange range) {
-      for (auto i = range.begin; i < range.end; ++i) {
-        const int shape = shapes.first + static_cast<int>(i);
-        const std::int64_t before = std::accumulate(shape_counts_.begin() + shapes.first,
-                                                    shape_counts_.begin() + shape, std::int64_t{0});
-        const auto here = std::min<std::int64_t>(slice.postings - before, shape_counts_[shape]);
-        sort_shape(shape, entries.subspan(before, here), rows.data() + before * io::kPostingBytes);
-      }
+  template <typename Parts, typename Body>
+  void for_each_part(Parts& parts, const Body& body) {
+    workers_.for_blocks(std::ssize(parts), 8, [&](engine::IndexRange range) {
+      for (auto i = range.begin; i < range.end; ++i) body(parts[i], static_cast<std::size_t>(i));
     });
-    return rows;
+  }
+
+  [[noreturn]] void refuse_changed() const {
+    throw io::Error(job_.output, "", "the runs changed while they were read", "run again");
+  }
+
+  // The first entry of each shape, and the end; a slice of cells is all of its only shape.
+  std::vector<std::size_t> begin_of_shapes(const Slice& slice) const {
+    const io::ShapeRange shapes = slice.shapes();
+    std::vector<std::size_t> begin = {0};
+    for (int shape = shapes.first; shape + 1 < shapes.end; ++shape)
+      begin.push_back(begin.back() + shape_counts_[shape]);
+    begin.push_back(static_cast<std::size_t>(slice.postings));
+    return begin;
+  }
+
+  // Packed postings by cell: a counting sort, which keeps the order of models, in each shape.
+  void write_sorted(const Slice& slice, std::span<const Entry> entries,
+                    io::PostingPartitionWriter& writer) {
+    const io::ShapeRange shapes = slice.shapes();
+    const std::vector<std::size_t> begin = begin_of_shapes(slice);
+    std::vector<std::int64_t> bytes;
+    for (std::size_t i = 0; i + 1 < begin.size(); ++i)
+      bytes.push_back(static_cast<std::int64_t>((begin[i + 1] - begin[i]) * io::kPostingBytes));
+    const std::vector<engine::IndexRange> batches = batches_of(bytes, kSortedBytes);
+    make_and_write(
+        std::ssize(batches), 4 * workers_.threads(), workers_,
+        [&](std::int64_t batch) {
+          const auto [first, last] = batches[batch];
+          std::vector<std::byte> rows((begin[last] - begin[first]) * io::kPostingBytes);
+          for (auto i = first; i < last; ++i)
+            sort_shape(shapes.first + static_cast<int>(i),
+                       entries.subspan(begin[i], begin[i + 1] - begin[i]),
+                       rows.data() + (begin[i] - begin[first]) * io::kPostingBytes);
+          return rows;
+        },
+        [&](const std::vector<std::byte>& rows) { writer.add(rows); });
   }
 
   void sort_shape(int shape, std::span<const Entry> entries, std::byte* rows) {

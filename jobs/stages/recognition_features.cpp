@@ -68,16 +68,12 @@ void add_strongest(const std::vector<Feature>& features, FeatureKind kind, int l
   result.features.insert(result.features.end(), strong.begin(), strong.end());
 }
 
-/// `of_kind(kind)` gives the features of a kind.
-template <typename OfKind>
 void add_level(int level, double scale, const RecognitionParameters& parameters,
-               const OfKind& of_kind, kernels::OrientedFeatures& result) {
+               const kernels::FeaturesByKind& of_kind, kernels::OrientedFeatures& result) {
   result.level_scale.push_back(static_cast<float>(scale));
   const int kinds = parameters.torsion ? kernels::kFeatureKinds : kernels::kContourKinds;
-  for (int i = 0; i < kinds; ++i) {
-    const auto kind = static_cast<FeatureKind>(i);
-    add_strongest(of_kind(kind), kind, level, scale, parameters, result);
-  }
+  for (int kind = 0; kind < kinds; ++kind)
+    add_strongest(of_kind[kind], FeatureKind(kind), level, scale, parameters, result);
 }
 
 void measure(const std::vector<Vector3f>& points, kernels::RecognitionModel& model) {
@@ -127,13 +123,8 @@ void evolve(const kernels::Surface& surface, const RecognitionParameters& parame
                                               samples_of(first.triangles, parameters));
       if (parameters.rim) kernels::mark_rim(fields.points, first.triangles, model.samples);
     }
-    const kernels::LevelFeatures found = find_features(evolving, fields, {}, context);
-    add_level(
-        level, fields.scale, parameters,
-        [&](FeatureKind kind) -> const std::vector<Feature>& {
-          return found.of_kind[static_cast<int>(kind)];
-        },
-        model.features);
+    add_level(level, fields.scale, parameters, find_features(evolving, fields, {}, context).of_kind,
+              model.features);
     if (level + 1 < levels) evolving.move();
   }
 }
@@ -197,7 +188,7 @@ kernels::RecognitionModel recognition_model(const io::Dataset& dataset,
   const std::vector<Vector3f> points = vectors_of(dataset.read_floats(0, "points"));
   const Triangles triangles = triangles_of(dataset.read_integers(0, "triangles"));
   measure(points, model);
-  const int levels = levels_of(dataset.level(0).scale, model.diagonal, parameters);
+  const int levels = levels_of(dataset.scale(0), model.diagonal, parameters);
   if (!has_octaves(dataset) || dataset.level_count() < levels) {
     kernels::TriangleMesh mesh;
     for (const Vector3f& p : points) mesh.points.push_back(p.cast<double>());
@@ -212,9 +203,8 @@ kernels::RecognitionModel recognition_model(const io::Dataset& dataset,
                               samples_of(triangles, parameters));
   if (parameters.rim) kernels::mark_rim(points, triangles, model.samples);
   for (int level = 0; level < levels; ++level)
-    add_level(
-        level, dataset.level(level).scale, parameters,
-        [&](FeatureKind kind) { return dataset.read_features(level, kind); }, model.features);
+    add_level(level, dataset.scale(level), parameters, dataset.read_features(level),
+              model.features);
   return model;
 }
 

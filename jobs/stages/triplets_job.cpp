@@ -12,7 +12,7 @@ TripletsJobResult run_triplets_job(const TripletsJob& job, const RecognitionPara
   kernels::RecognitionModel model = recognition_model(dataset, parameters, context);
   model.name = job.name;
   const std::vector<kernels::Triplet> triplets = kernels::local_triplets(model.features, {});
-  io::write_triplet_run(job.output, job.key, model, triplets);
+  io::write_triplet_run(job.output, job.key_of(dataset.header().job_key), model, triplets);
   return {.features = static_cast<std::int64_t>(model.features.features.size()),
           .samples = static_cast<std::int64_t>(model.samples.points.size()),
           .triplets = static_cast<std::int64_t>(triplets.size())};

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "engine/run_context.hpp"
@@ -14,7 +15,8 @@ struct TripletsJob {
   std::filesystem::path dataset;
   std::string name;  ///< of the model
   std::filesystem::path output;
-  std::string key;  ///< hash of everything the run depends on
+  /// From the key of the dataset that is read, a hash of everything the run depends on.
+  std::function<std::string(const std::string&)> key_of;
 };
 
 struct TripletsJobResult {

@@ -103,11 +103,10 @@ TEST_P(DatasetRoundTrip, EverythingComesBack) {
     for (const auto& triangle : level.triangles)
       corners.insert(corners.end(), triangle.begin(), triangle.end());
     EXPECT_EQ(dataset.read_integers(k, "triangles"), corners);
-    for (int kind = 0; kind < kernels::kFeatureKinds; ++kind) {
-      EXPECT_TRUE(dataset.read_features(k, kernels::FeatureKind(kind)) ==
-                  level.features.of_kind[kind]);
+    EXPECT_EQ(dataset.scale(k), info.scale);
+    EXPECT_TRUE(dataset.read_features(k) == level.features.of_kind);
+    for (int kind = 0; kind < kernels::kFeatureKinds; ++kind)
       EXPECT_EQ(info.features.of_kind[kind], k * (5 + kind));
-    }
     for (int kind = 0; kind < kContourKinds; ++kind) {
       EXPECT_TRUE(dataset.read_contours(k, kernels::FeatureKind(kind)) ==
                   level.features.contours[kind]);
@@ -287,7 +286,8 @@ TEST(Dataset, AsksForWhatExists) {
   EXPECT_THROW(dataset.read_floats(0, "triangles"), Error);
   EXPECT_THROW(dataset.read_floats(0, "torsion"), Error);
   EXPECT_THROW(dataset.read_integers(0, "points"), Error);
-  EXPECT_THROW(dataset.read_features(3, kernels::FeatureKind::mean), Error);
+  EXPECT_THROW(dataset.read_features(3), Error);
+  EXPECT_THROW(dataset.scale(3), Error);
   EXPECT_THROW(dataset.read_contours(3, kernels::FeatureKind::mean), Error);
   EXPECT_THROW(dataset.read_contours(0, kernels::FeatureKind::mean_torsion), std::invalid_argument);
 }

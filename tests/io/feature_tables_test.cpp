@@ -48,8 +48,7 @@ class FeatureTablesTest : public ::testing::Test {
     try {
       const Hdf5File file = Hdf5File::open(path_);
       check_features(file, kLevel);
-      for (int kind = 0; kind < kernels::kFeatureKinds; ++kind)
-        read_features(file, kLevel, FeatureKind(kind), kVertices);
+      read_features(file, kLevel, kVertices);
       for (int kind = 0; kind < kContourKinds; ++kind)
         read_contours(file, kLevel, FeatureKind(kind));
     } catch (const Error& error) {
@@ -87,9 +86,9 @@ TEST_F(FeatureTablesTest, EverythingComesBack) {
       const Hdf5File file = Hdf5File::open(path_);
       EXPECT_EQ(content_digest(file), digest_);
       const FeatureCounts counts = check_features(file, kLevel);
+      EXPECT_TRUE(read_features(file, kLevel, kVertices) == features.of_kind);
       for (int kind = 0; kind < kernels::kFeatureKinds; ++kind) {
         const auto& wanted = features.of_kind[kind];
-        EXPECT_TRUE(read_features(file, kLevel, FeatureKind(kind), kVertices) == wanted);
         EXPECT_EQ(counts.of_kind[kind], static_cast<std::int64_t>(wanted.size()));
       }
       for (int kind = 0; kind < kContourKinds; ++kind) {

@@ -115,6 +115,26 @@ TEST_F(HashLibraryTest, HoldsWhatWasWritten) {
   library.verify();
 }
 
+// Order is looked at block by block, on any threads, and between blocks afterwards.
+TEST_F(HashLibraryTest, OrderIsCheckedFromBlockToBlock) {
+  SampleLibrary sample(90);
+  const std::uint64_t first = kBlockPostings - 5;
+  const std::uint64_t last = kBlockPostings + 5;
+  for (std::uint64_t& cell : sample.cells)  // one cell has them all
+    if (cell > first && cell < last) cell = last;
+  std::ranges::sort(
+      std::span(sample.postings).subspan(first, last - first), {},
+      [](const kernels::Posting& posting) { return std::pair(posting.model, posting.corners); });
+  const ForEach all_at_once = [](std::int64_t count, const auto& body) {
+    std::vector<std::jthread> threads;
+    for (std::int64_t i = 0; i < count; ++i) threads.emplace_back(body, i);
+  };
+  HashLibrary(write(sample)).verify(all_at_once);
+  std::swap(sample.postings[kBlockPostings - 1], sample.postings[kBlockPostings]);
+  EXPECT_NE(message_of([&] { write(sample); }).find("posting 65536 is not behind"),
+            std::string::npos);
+}
+
 TEST_F(HashLibraryTest, MayBeEmpty) {
   const HashLibrary none(write(SampleLibrary(0)));
   EXPECT_TRUE(none.models().empty());

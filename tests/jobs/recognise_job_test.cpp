@@ -51,8 +51,11 @@ class RecogniseJobTest : public testing::Test {
   }
   void make_library(const std::string& parameters_json) {
     const fs::path run = folder_ / "torus.run";
-    run_triplets_job({.dataset = dataset_, .name = "torus", .output = run, .key = "t"}, {},
-                     context_);
+    run_triplets_job({.dataset = dataset_,
+                      .name = "torus",
+                      .output = run,
+                      .key_of = [](const std::string& key) { return key; }},
+                     {}, context_);
     const fs::path part = folder_ / "all.part";
     run_partition_job({.runs = {run}, .shapes = {0, kernels::kShapes}, .output = part, .key = "p"},
                       context_);

@@ -32,8 +32,12 @@ class TripletsJobTest : public testing::Test {
     job.name = "torus";
     job.output = folder_ / "torus.vtkhdf";
     job.input_xxh3 = io::xxh3_of_file(scan);
+    job.key = "k";
     run_surface_job(job, parameters, {workers_, observer_, {}});
-    job_ = {.dataset = job.output, .name = "torus", .output = folder_ / "torus.run", .key = "k"};
+    job_ = {.dataset = job.output,
+            .name = "torus",
+            .output = folder_ / "torus.run",
+            .key_of = [](const std::string& dataset_key) { return "of " + dataset_key; }};
   }
 
   tests::TemporaryFolder folder_;
@@ -49,7 +53,7 @@ TEST_F(TripletsJobTest, RunHasTheModelAndItsTriplets) {
   const kernels::RecognitionModel expected =
       recognition_model(dataset, parameters, {workers_, observer_, {}});
   const io::TripletRun run(job_.output);
-  EXPECT_EQ(run.job_key(), "k");
+  EXPECT_EQ(run.job_key(), "of k");
   EXPECT_EQ(run.name(), "torus");
   const kernels::RecognitionModel model = run.read_model();
   EXPECT_EQ(model.digest, dataset.digest());

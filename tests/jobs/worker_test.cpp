@@ -138,14 +138,25 @@ TEST_F(WorkerTest, WhatAJobPrintsGoesToItsLog) {
   const JobRequest silent = request("a.obj");
   const JobRequest loud = request("b.obj");
   ASSERT_TRUE(reply_to(worker, silent).has_value());
-  EXPECT_FALSE(fs::exists(silent.log));  // nothing was printed
+  EXPECT_EQ(contents(silent.log), "");  // nothing was printed
   fs::create_directories(loud.log.parent_path());
   std::ofstream(loud.log) << "before\n";
   EXPECT_FALSE(reply_to(worker, loud).has_value());
   ASSERT_TRUE(ended_.has_value());
   EXPECT_EQ(ended_->signal, SIGSEGV);
   EXPECT_EQ(contents(loud.log), "before\nabout to crash\n");
+  EXPECT_FALSE(fs::exists(silent.log));
   EXPECT_EQ(contents(folder_ / "worker.log"), "");
+}
+
+TEST_F(WorkerTest, AnEmptyLogBecomesThatOfTheNextJob) {
+  const auto worker = start();
+  const JobRequest first = request("a.obj");
+  const JobRequest second = request("b.obj");
+  ASSERT_TRUE(reply_to(worker, first).has_value());
+  ASSERT_TRUE(reply_to(worker, second).has_value());
+  EXPECT_FALSE(fs::exists(first.log));
+  EXPECT_TRUE(fs::exists(second.log));
 }
 
 TEST_F(WorkerTest, ALogThatCannotBeOpenedIsDoneWithout) {
@@ -181,7 +192,7 @@ TEST_F(WorkerTest, MemoryBeyondTheLimitIsAFailureAndTheNextJobHasIts) {
         failed->error.starts_with(bomb.job.input.string() + ": needs more than the 600 MiB"))
         << failed->error;
     EXPECT_EQ(failed->error.find('\n'), std::string::npos);
-    EXPECT_FALSE(fs::exists(bomb.log));
+    EXPECT_EQ(contents(bomb.log), "");
     const auto next = reply_to(worker, good);
     ASSERT_TRUE(next.has_value());
     EXPECT_EQ(next->kind, JobReply::Kind::kDone) << next->error;

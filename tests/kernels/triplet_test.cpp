@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -79,6 +80,50 @@ TEST(Triplet, IsOfTheNearestFeaturesOnly) {
   // Each feature with the pair of its two neighbours: no more triangles than features.
   EXPECT_LE(local_triplets(features, few).size(), 200U);
   EXPECT_GT(local_triplets(features, {}).size(), 1000U);
+}
+
+// By the definition, feature after feature.
+std::set<std::array<std::uint16_t, 3>> triangles_of(const OrientedFeatures& features,
+                                                    const TripletOptions& options) {
+  const auto& all = features.features;
+  const auto distance = [&](std::size_t i, std::size_t j) {
+    return (all[i].position - all[j].position).norm();
+  };
+  std::set<std::array<std::uint16_t, 3>> triangles;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    std::vector<std::uint16_t> near;
+    for (std::size_t j = 0; j < all.size(); ++j)
+      if (distance(i, j) >= options.nearest && distance(i, j) <= options.farthest)
+        near.push_back(static_cast<std::uint16_t>(j));
+    std::ranges::sort(near, {}, [&](std::uint16_t j) { return distance(i, j); });
+    near.resize(std::min<std::size_t>(near.size(), options.neighbours));
+    for (const std::uint16_t j : near)
+      for (const std::uint16_t k : near) {
+        if (j >= k || distance(j, k) < options.nearest) continue;
+        std::array<std::uint16_t, 3> triangle = {static_cast<std::uint16_t>(i), j, k};
+        const Vector3f across =
+            (all[j].position - all[i].position).cross(Vector3f(all[k].position - all[i].position));
+        const float longest = std::max({distance(i, j), distance(i, k), distance(j, k)});
+        if (across.norm() < options.min_height * longest * longest) continue;
+        std::ranges::sort(triangle);
+        triangles.insert(triangle);
+      }
+  }
+  return triangles;
+}
+
+TEST(Triplet, AreThoseOfTheDefinition) {
+  const TripletOptions options;
+  for (const int count : {3, 30, 300}) {
+    const OrientedFeatures features = random_features(count, 7);
+    std::set<std::array<std::uint16_t, 3>> found;
+    for (const Triplet& triplet : local_triplets(features, options)) {
+      std::array<std::uint16_t, 3> corners = triplet.corners;
+      std::ranges::sort(corners);
+      found.insert(corners);
+    }
+    EXPECT_EQ(found, triangles_of(features, options));
+  }
 }
 
 TEST(Triplet, NoneFromFeaturesOnALine) {
