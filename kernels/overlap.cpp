@@ -31,9 +31,10 @@ class NearestWithin {
   explicit NearestWithin(float squared_limit) : squared_(squared_limit) {}
   std::int64_t index() const { return index_; }
   bool addPoint(float squared, std::size_t index) {
-    if (squared < squared_ || (squared == squared_ && static_cast<std::int64_t>(index) < index_)) {
+    const auto i = static_cast<std::int64_t>(index);
+    if (squared < squared_ || (squared == squared_ && i < index_)) {
       squared_ = squared;
-      index_ = static_cast<std::int64_t>(index);
+      index_ = i;
     }
     return true;
   }
@@ -91,9 +92,16 @@ SampleTree::SampleTree(const SurfaceSamples& samples)
 SampleTree::~SampleTree() = default;
 SampleTree::SampleTree(SampleTree&&) noexcept = default;
 
-std::int64_t SampleTree::nearest(const Vector3f& p, float limit) const {
+std::int64_t SampleTree::nearest(const Vector3f& p, float limit, std::int64_t guess) const {
   if (samples_->points.empty()) return -1;
   NearestWithin result(limit * limit);
+  if (guess >= 0) {
+    const Vector3f offset = p - samples_->points[guess];
+    // As the tree sums squares, so that what is equally near stays so.
+    const float squared =
+        offset.x() * offset.x() + offset.y() * offset.y() + offset.z() * offset.z();
+    result.addPoint(squared, static_cast<std::size_t>(guess));
+  }
   tree_->index.findNeighbors(result, p.data(), nanoflann::SearchParams());
   return result.index();
 }
@@ -169,6 +177,7 @@ Similarity refined(const SurfaceSamples& model, double diagonal, const Similarit
   for (std::size_t i = 0; i < n; ++i)
     centre += model.points[i].cast<double>() / static_cast<double>(n);
   Similarity pose = start;
+  std::vector<std::int64_t> nearest(n, -1);  // to each sample, before the last step
   for (const double reach : options.reach)
     for (int iteration = 0; iteration < options.iterations; ++iteration) {
       const FastPose fast(pose);
@@ -182,7 +191,8 @@ Similarity refined(const SurfaceSamples& model, double diagonal, const Similarit
       int matched = 0;
       for (std::size_t i = 0; i < n; ++i) {
         const Vector3f p = fast.point(model.points[i]);
-        const std::int64_t near = scene.nearest(p, limit + spacing);
+        const std::int64_t near = scene.nearest(p, limit + spacing, nearest[i]);
+        nearest[i] = near;
         if (near < 0) continue;
         const Vector3f& q = scene.samples().points[near];
         const Vector3f& nq = scene.samples().normals[near];

@@ -20,8 +20,9 @@ class SampleTree {
   SampleTree(SampleTree&&) noexcept;
 
   const SurfaceSamples& samples() const { return *samples_; }
-  /// Its index, or -1 if none is nearer than `limit`.
-  std::int64_t nearest(const Eigen::Vector3f& p, float limit) const;
+  /// Its index, or -1 if none is nearer than `limit`. `guess`: a sample that may be near, such as
+  /// what was nearest before p moved a little, or -1; it makes the search shorter.
+  std::int64_t nearest(const Eigen::Vector3f& p, float limit, std::int64_t guess = -1) const;
 
  private:
   struct Tree;

@@ -98,9 +98,15 @@ bool within_tolerances(SixteenBytes a, SixteenBytes b) {
   return (halves[0] | halves[1]) == 0;
 }
 
-bool same_normals(const Invariants& a, const Invariants& b) {
+using Normals = std::array<Vector3f, 3>;
+
+Normals normals_of(const Invariants& invariants) {
+  return {normal_of(invariants, 0), normal_of(invariants, 1), normal_of(invariants, 2)};
+}
+
+bool same_normals(const Normals& a, const Invariants& b) {
   for (int corner = 0; corner < 3; ++corner)
-    if (normal_of(a, corner).dot(normal_of(b, corner)) < kCosNormalTolerance) return false;
+    if (a[corner].dot(normal_of(b, corner)) < kCosNormalTolerance) return false;
   return true;
 }
 
@@ -375,15 +381,16 @@ std::vector<std::uint32_t> cells_around(std::uint32_t cell) {
 }
 
 bool compatible(const Invariants& a, const Invariants& b) {
-  return within_tolerances(bytes_of(a), bytes_of(b)) && same_normals(a, b);
+  return within_tolerances(bytes_of(a), bytes_of(b)) && same_normals(normals_of(a), b);
 }
 
 void find_compatible(const Invariants& wanted, std::span<const Posting> postings,
                      std::vector<std::uint32_t>& found) {
   const SixteenBytes bytes = bytes_of(wanted);
+  const Normals normals = normals_of(wanted);
   for (std::uint32_t i = 0; i < postings.size(); ++i) {
     const Invariants& other = postings[i].invariants;
-    if (within_tolerances(bytes, bytes_of(other)) && same_normals(wanted, other))
+    if (within_tolerances(bytes, bytes_of(other)) && same_normals(normals, other))
       found.push_back(i);
   }
 }

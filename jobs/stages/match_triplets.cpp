@@ -21,21 +21,25 @@ constexpr std::size_t kProbedSegments = 40;
 
 /// Numbers of the triangles that triplets are, in whatever order of corners.
 std::vector<std::uint32_t> triangles_of(const std::vector<Triplet>& triplets) {
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> sorted;
+  struct Place {
+    std::uint64_t corners;
+    std::uint32_t triplet;
+  };
+  std::vector<Place> sorted;
   sorted.reserve(triplets.size());
   for (const Triplet& triplet : triplets) {
     std::array<std::uint16_t, 3> corners = triplet.corners;
     std::ranges::sort(corners);
     std::uint64_t packed = 0;
     for (const std::uint16_t corner : corners) packed = packed << 16 | corner;
-    sorted.emplace_back(packed, static_cast<std::uint32_t>(sorted.size()));
+    sorted.push_back({packed, static_cast<std::uint32_t>(sorted.size())});
   }
-  std::ranges::sort(sorted);
+  std::ranges::sort(sorted, {}, &Place::corners);
   std::vector<std::uint32_t> numbers(triplets.size());
   std::uint32_t number = 0;
   for (std::size_t i = 0; i < sorted.size(); ++i) {
-    if (i > 0 && sorted[i].first != sorted[i - 1].first) ++number;
-    numbers[sorted[i].second] = number;
+    if (i > 0 && sorted[i].corners != sorted[i - 1].corners) ++number;
+    numbers[sorted[i].triplet] = number;
   }
   return numbers;
 }

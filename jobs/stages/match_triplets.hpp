@@ -30,7 +30,7 @@ struct TripletMatches {
 /// Where a scene has more, an even share of its triangles is looked up: an object that is seen well
 /// has hundreds of them.
 struct MatchLimits {
-  std::int64_t triangles = 40'000;
+  std::int64_t triangles = 32'000;
   std::int64_t compared = 3'000'000'000;  ///< pairs of triplets
   std::int64_t matches = 8'000'000;  ///< as far as a few blocks of a large library tell beforehand
 };

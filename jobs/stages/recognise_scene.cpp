@@ -42,6 +42,10 @@ constexpr std::int64_t kFineSamples = 2000;
 constexpr std::int64_t kExplainedSamples = 4000;
 
 constexpr kernels::OverlapOptions kCoarse = {.match = 0.02, .conflict = 0.06, .min_cosine = 0.6};
+/// Noise and triangulation grow with the edges: of coarse scans the surfaces that are one lie
+/// farther apart. In mean edge lengths of the coarser one, and at most so many diagonals.
+constexpr double kMatchEdges = 0.5;
+constexpr double kWidestMatch = 0.02;
 constexpr kernels::PoseTolerance kSupport = {.log_scale = 0.15, .distance = 0.06, .angle = 0.25};
 
 kernels::TripletOptions scene_triplets() {
@@ -203,8 +207,23 @@ class Recogniser {
       pose.pose = kernels::refined(model.samples, model.diagonal, pose.pose, tree_,
                                    {.reach = {0.08, 0.05}, .iterations = 3, .count = 200});
     leave_out_repeated(listed);
-    look(listed, kMiddleSamples, {});
+    for (Pose& pose : listed.poses)
+      pose.coarse = kernels::overlap(model.samples, model.diagonal, pose.pose, tree_,
+                                     close(model, pose.pose), kMiddleSamples)
+                        .agreement();
     keep(listed.poses, kRefinedPerModel, 0);
+  }
+
+  /// As close as a pose of the model can be expected to lie.
+  kernels::OverlapOptions close(const RecognitionModel& model, const Similarity& pose) const {
+    kernels::OverlapOptions result;
+    const std::vector<float>& of_scene = scene_.features.level_scale;
+    const std::vector<float>& of_model = model.features.level_scale;
+    if (of_scene.empty() || of_model.empty()) return result;
+    const double edge = std::max<double>(of_scene.front(), of_model.front() * pose.scale);
+    result.match =
+        std::clamp(kMatchEdges * edge / (model.diagonal * pose.scale), result.match, kWidestMatch);
+    return result;
   }
 
   void look(Listed& listed, std::int64_t samples, const kernels::OverlapOptions& options) const {
@@ -264,10 +283,11 @@ class Recogniser {
   void measure(Pose& pose, std::span<const std::uint8_t> used) const {
     const Listed& listed = shortlist_[pose.listed];
     const RecognitionModel& model = listed.record;
-    pose.overlap =
-        kernels::overlap(model.samples, model.diagonal, pose.pose, tree_, {}, kFineSamples, used);
+    const kernels::OverlapOptions options = close(model, pose.pose);
+    pose.overlap = kernels::overlap(model.samples, model.diagonal, pose.pose, tree_, options,
+                                    kFineSamples, used);
     const auto marks = kernels::explained(*listed.tree, model.diagonal, pose.pose, scene_.samples,
-                                          {}, kExplainedSamples, used);
+                                          options, kExplainedSamples, used);
     pose.explained = static_cast<double>(std::ranges::count(marks, 1)) /
                      static_cast<double>(std::max<std::size_t>(marks.size(), 1));
     pose.score = score_of(pose);
