@@ -173,7 +173,7 @@ class Recogniser {
     if (shortlist_.size() > kFewModels) clusters.seeds = 4 * kFewClusters;
     for (const kernels::PoseCluster& cluster : listed.votes.clusters(clusters))
       listed.poses.push_back({.listed = index, .pose = cluster.pose, .cluster = cluster.weight});
-    look(listed, kGlanceSamples, kCoarse);
+    look(listed, kGlanceSamples, coarse);
     keep(listed.poses, kGlanced, kCoarseByWeight);
   }
 
@@ -201,16 +201,13 @@ class Recogniser {
 
   void look_closer(Listed& listed) {
     const RecognitionModel& model = listed.record;
-    look(listed, kCoarseSamples, kCoarse);
+    look(listed, kCoarseSamples, coarse);
     keep(listed.poses, kCoarseByOverlap, kCoarseByWeight);
     for (Pose& pose : listed.poses)
       pose.pose = kernels::refined(model.samples, model.diagonal, pose.pose, tree_,
                                    {.reach = {0.08, 0.05}, .iterations = 3, .count = 200});
     leave_out_repeated(listed);
-    for (Pose& pose : listed.poses)
-      pose.coarse = kernels::overlap(model.samples, model.diagonal, pose.pose, tree_,
-                                     close(model, pose.pose), kMiddleSamples)
-                        .agreement();
+    look(listed, kMiddleSamples, [&](const Pose& pose) { return close(model, pose.pose); });
     keep(listed.poses, kRefinedPerModel, 0);
   }
 
@@ -226,12 +223,15 @@ class Recogniser {
     return result;
   }
 
-  void look(Listed& listed, std::int64_t samples, const kernels::OverlapOptions& options) const {
+  static kernels::OverlapOptions coarse(const Pose& /*pose*/) { return kCoarse; }
+
+  template <typename OptionsOf>
+  void look(Listed& listed, std::int64_t samples, const OptionsOf& options_of) const {
     const RecognitionModel& model = listed.record;
     for (Pose& pose : listed.poses)
-      pose.coarse =
-          kernels::overlap(model.samples, model.diagonal, pose.pose, tree_, options, samples)
-              .agreement();
+      pose.coarse = kernels::overlap(model.samples, model.diagonal, pose.pose, tree_,
+                                     options_of(pose), samples)
+                        .agreement();
   }
 
   /// The best by overlap, and the heaviest clusters of the rest.
