@@ -10,7 +10,7 @@ constexpr const char* kSurfaceJobVersion = "surface 10";
 constexpr const char* kTripletsJobVersion = "triplets 1";
 constexpr const char* kPartitionJobVersion = "partition 1";
 constexpr const char* kLibraryJobVersion = "library 1";
-constexpr const char* kRecogniseJobVersion = "recognise 1";
+constexpr const char* kRecogniseJobVersion = "recognise 2";
 
 std::string joined(std::span<const std::string> keys) {
   std::string text;

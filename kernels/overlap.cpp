@@ -5,6 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <nanoflann.hpp>
+#include <numbers>
+#include <optional>
+
+#include "kernels/slippage.hpp"
 
 namespace semigeo::kernels {
 namespace {
@@ -74,6 +78,58 @@ bool on_surface(const Vector3f& p, const Vector3f& q, const Vector3f& n, float t
   return offset.squaredNorm() - height * height <= reach * reach;
 }
 
+/// A sample of a posed model and what of the scene it touches.
+struct Contact {
+  OrientedPoint posed;
+  std::int64_t near = -1;  ///< the nearest sample of the scene, -1: none within the limit
+  bool matches = false;    ///< both are one surface
+  float height = 0;        ///< over the scene's surface
+  float cosine = 0;        ///< between the normals
+};
+
+/// Samples of a model in one pose, against a scene.
+class PosedModel {
+ public:
+  PosedModel(const SurfaceSamples& model, double diagonal, const Similarity& pose,
+             const SampleTree& tree, const OverlapOptions& options)
+      : model_(model),
+        pose_(pose),
+        tree_(tree),
+        tolerance_(static_cast<float>(options.match * diagonal * pose.scale)),
+        min_cosine_(options.min_cosine) {}
+
+  float tolerance() const { return tolerance_; }
+
+  Contact contact(std::size_t i, float limit) const {
+    const SurfaceSamples& scene = tree_.samples();
+    Contact c;
+    c.posed = {pose_.point(model_.points[i]), pose_.rotation * model_.normals[i]};
+    c.near = tree_.nearest(c.posed.point, limit + scene.spacing);
+    if (c.near < 0) return c;
+    const Vector3f& q = scene.points[c.near];
+    const Vector3f& normal = scene.normals[c.near];
+    c.cosine = normal.dot(c.posed.normal);
+    c.height = (c.posed.point - q).dot(normal);
+    c.matches =
+        on_surface(c.posed.point, q, normal, tolerance_, scene.spacing) && c.cosine > min_cosine_;
+    return c;
+  }
+
+ private:
+  const SurfaceSamples& model_;
+  const FastPose pose_;
+  const SampleTree& tree_;
+  const float tolerance_;
+  const double min_cosine_;
+};
+
+Similarity turn_about(const Axis& axis, double angle) {
+  Similarity turn;
+  turn.rotation = Eigen::AngleAxisd(angle, axis.direction).toRotationMatrix();
+  turn.translation = axis.point - turn.rotation * axis.point;
+  return turn;
+}
+
 }  // namespace
 
 struct SampleTree::Tree {
@@ -115,34 +171,62 @@ double Overlap::agreement() const {
 Overlap overlap(const SurfaceSamples& model, double diagonal, const Similarity& pose,
                 const SampleTree& tree, const OverlapOptions& options, std::int64_t count,
                 std::span<const std::uint8_t> used) {
-  const FastPose fast(pose);
-  const SurfaceSamples& scene = tree.samples();
-  const double size = diagonal * pose.scale;
-  const auto tolerance = static_cast<float>(options.match * size);
-  const auto limit = static_cast<float>(options.conflict * size);
+  const PosedModel posed(model, diagonal, pose, tree, options);
+  const auto limit = static_cast<float>(options.conflict * diagonal * pose.scale);
+  const std::vector<std::uint8_t>& rim = tree.samples().rim;
   const std::size_t n = bounded(count, model);
   std::int64_t matches = 0;
   std::int64_t conflicts = 0;
   double closeness = 0;
+  std::vector<OrientedPoint> matched;
   for (std::size_t i = 0; i < n; ++i) {
-    const Vector3f p = fast.point(model.points[i]);
-    const std::int64_t near = tree.nearest(p, limit + scene.spacing);
-    if (near < 0 || (!used.empty() && used[near] != 0)) continue;
-    const Vector3f& q = scene.points[near];
-    const Vector3f& normal = scene.normals[near];
-    const float cosine = normal.dot(fast.rotation * model.normals[i]);
-    const float height = (p - q).dot(normal);
-    if (on_surface(p, q, normal, tolerance, scene.spacing) && cosine > options.min_cosine) {
+    const Contact c = posed.contact(i, limit);
+    if (c.near < 0 || (!used.empty() && used[c.near] != 0)) continue;
+    if (c.matches) {
       ++matches;
-      closeness += 1 - (height / tolerance) * (height / tolerance);
-    } else if (scene.rim.empty() || (scene.rim[near] == 0 && !(cosine < 0 && height < 0))) {
+      closeness += 1 - (c.height / posed.tolerance()) * (c.height / posed.tolerance());
+      if (options.stability) matched.push_back(c.posed);
+    } else if (rim.empty() || (rim[c.near] == 0 && !(c.cosine < 0 && c.height < 0))) {
       ++conflicts;
     }
   }
   if (matches == 0 && conflicts == 0) return {};
   return {.match = static_cast<double>(matches) / static_cast<double>(n),
           .conflict = static_cast<double>(conflicts) / static_cast<double>(n),
-          .closeness = matches == 0 ? 0 : closeness / static_cast<double>(matches)};
+          .closeness = matches == 0 ? 0 : closeness / static_cast<double>(matches),
+          .stability = Slippage(matched).stability()};
+}
+
+std::vector<Similarity> turned(const SurfaceSamples& model, double diagonal, const Similarity& pose,
+                               const SampleTree& tree, const OverlapOptions& options,
+                               std::int64_t count) {
+  constexpr int kTurns = 36;
+  constexpr double kFree = 0.02;  // a handle holds a cup by no more
+  std::vector<Similarity> result;
+  const std::size_t n = bounded(count, model);
+  if (n == 0) return result;
+  Vector3d middle = Vector3d::Zero();
+  for (std::size_t i = 0; i < n; ++i)
+    middle += model.points[i].cast<double>() / static_cast<double>(n);
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vector3d arm = model.points[i].cast<double>() - middle;
+    spread += arm * arm.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(spread);
+  for (int axis = 0; axis < 3; ++axis)
+    result.push_back(pose *
+                     turn_about({middle, principal.eigenvectors().col(axis)}, std::numbers::pi));
+
+  const PosedModel posed(model, diagonal, pose, tree, options);
+  std::vector<OrientedPoint> matched;
+  for (std::size_t i = 0; i < n; ++i)
+    if (const Contact c = posed.contact(i, posed.tolerance()); c.matches)
+      matched.push_back(c.posed);
+  if (const std::optional<Axis> axis = Slippage(matched).free_turn(kFree))
+    for (int k = 1; k < kTurns; ++k)
+      result.push_back(turn_about(*axis, 2 * std::numbers::pi * k / kTurns) * pose);
+  return result;
 }
 
 std::vector<std::uint8_t> explained(const SampleTree& model, double diagonal,
@@ -169,7 +253,6 @@ std::vector<std::uint8_t> explained(const SampleTree& model, double diagonal,
 
 Similarity refined(const SurfaceSamples& model, double diagonal, const Similarity& start,
                    const SampleTree& scene, const RefineOptions& options) {
-  using Vector7d = Eigen::Matrix<double, 7, 1>;
   using Matrix7d = Eigen::Matrix<double, 7, 7>;
   constexpr int kFewest = 12;
   const std::size_t n = bounded(options.count, model);
@@ -185,7 +268,7 @@ Similarity refined(const SurfaceSamples& model, double diagonal, const Similarit
       const auto limit = static_cast<float>(reach * size);
       const float spacing = scene.samples().spacing;
       Matrix7d normal_matrix = Matrix7d::Zero();
-      Vector7d right = Vector7d::Zero();
+      Constraint right = Constraint::Zero();
       // About the middle, in units of the model's size: all seven unknowns are of one magnitude.
       const Vector3d middle = pose.apply(centre);
       int matched = 0;
@@ -201,8 +284,7 @@ Similarity refined(const SurfaceSamples& model, double diagonal, const Similarit
           continue;
         const Vector3d normal = nq.cast<double>();
         const Vector3d arm = (p.cast<double>() - middle) / size;
-        Vector7d row;
-        row << arm.cross(normal), normal, arm.dot(normal);
+        const Constraint row = plane_constraint(arm, normal);
         normal_matrix.selfadjointView<Eigen::Lower>().rankUpdate(row);
         right += row * normal.dot((q - p).cast<double>()) / size;
         ++matched;
@@ -210,7 +292,7 @@ Similarity refined(const SurfaceSamples& model, double diagonal, const Similarit
       if (matched < kFewest) return pose;
       // Directions that no plane holds stay as they are.
       normal_matrix.diagonal().array() += 1e-4 * matched * reach;
-      const Vector7d step =
+      const Constraint step =
           Matrix7d(normal_matrix.selfadjointView<Eigen::Lower>()).ldlt().solve(right);
       if (!step.allFinite()) return pose;
       Similarity move;

@@ -35,6 +35,7 @@ struct OverlapOptions {
   double match = 0.01;      ///< surfaces that are nearer, and face the same way, are one
   double conflict = 0.04;   ///< surfaces that are nearer, but not one, contradict each other
   double min_cosine = 0.8;  ///< between normals that face the same way
+  bool stability = false;   ///< find it out, too
 };
 
 /// How a posed model lies in a scene.
@@ -42,6 +43,8 @@ struct Overlap {
   double match = 0;      ///< share of the model's samples that lie on the scene's surface
   double conflict = 0;   ///< share of those near it that disagree; what is far from it is neutral
   double closeness = 0;  ///< of what matches: mean of 1 - (distance / tolerance)^2
+  /// Of what matches: how firmly it holds the model, see Slippage::stability.
+  double stability = 0;
 
   /// What a match is worth that is contradicted: match closeness (match / (match + conflict))^2.
   double agreement() const;
@@ -55,6 +58,13 @@ struct Overlap {
 Overlap overlap(const SurfaceSamples& model, double diagonal, const Similarity& pose,
                 const SampleTree& scene, const OverlapOptions& options, std::int64_t count,
                 std::span<const std::uint8_t> used = {});
+
+/// Other poses that nearly symmetric models fit as well as in this one: half turns about the
+/// principal axes of their samples, and, where the surface that matches can turn along itself, a
+/// full circle of turns about its axis. `options` tell what matches.
+std::vector<Similarity> turned(const SurfaceSamples& model, double diagonal, const Similarity& pose,
+                               const SampleTree& scene, const OverlapOptions& options,
+                               std::int64_t count);
 
 /// Marks the scene's samples that lie on the posed model: result[i] = 1. Looks at the first `count`
 /// of them, and at those with used[i] = 0 only. `model` are the samples of the model.

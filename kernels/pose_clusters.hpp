@@ -30,8 +30,8 @@ struct PoseTolerance {
 
 struct ClusterOptions {
   PoseTolerance tolerance = {};
-  int seeds = 400;  ///< at most so many poses are tried: half by weight, half spread
-  int most = 80;    ///< clusters wanted
+  int seeds = 600;  ///< at most so many poses are tried: half by weight, half spread
+  int most = 120;   ///< clusters wanted
 };
 
 /// The votes of one model, 40 bytes each.

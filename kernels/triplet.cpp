@@ -2,12 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <numeric>
 #include <utility>
+
+#include "kernels/near_features.hpp"
 
 namespace semigeo::kernels {
 namespace {
@@ -123,84 +123,32 @@ struct Corner {
   std::uint8_t code;
 };
 
-/// The float interval of the squares of [low, high].
-struct SquaredBand {
-  float least;
-  float most;
-  SquaredBand(double low, double high)
-      : least(static_cast<float>(low * low)), most(static_cast<float>(high * high)) {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    if (least < low * low) least = std::nextafter(least, kInfinity);
-    if (most > high * high) most = std::nextafter(most, -kInfinity);
-  }
-};
-
 class LevelTriplets {
  public:
-  LevelTriplets(const OrientedFeatures& features, const TripletOptions& options,
-                std::vector<Triplet>& result)
-      : features_(features), options_(options), result_(result) {}
+  LevelTriplets(const TripletOptions& options, std::vector<Triplet>& result)
+      : options_(options), result_(result) {}
 
-  /// Of the features first to last - 1, which are those of one level.
-  void add(std::size_t first, std::size_t last) {
+  /// Of the features of one level, the first of which has the number `first`.
+  void add(std::span<const OrientedFeature> of_level, float sigma, std::size_t first) {
     first_ = first;
-    sigma_ = features_.level_scale[features_.features[first].level];
+    sigma_ = sigma;
     corners_.clear();
-    for (std::vector<float>& axis : places_) axis.clear();
-    for (std::size_t i = first; i < last; ++i) {
-      const OrientedFeature& f = features_.features[i];
+    for (const OrientedFeature& f : of_level)
       corners_.push_back({f.position, f.normal, curvature_byte(f.scale_free_gaussian),
                           curvature_byte(f.scale_free_mean), f.code});
-      for (int axis = 0; axis < 3; ++axis) places_[axis].push_back(f.position[axis]);
-    }
-    find_neighbours();
+    near_.find(of_level, options_.nearest * sigma_, options_.farthest * sigma_,
+               options_.neighbours);
     number_.assign(corners_.size(), kNobody);
     for (std::size_t i = 0; i < corners_.size(); ++i) enter_triangles_of(i);
   }
 
  private:
-  using Neighbours = std::span<const std::uint16_t>;
   static constexpr std::uint16_t kNobody = 0xffff;  // kMostFeatures is no index
-
-  Neighbours neighbours_of(std::size_t i) const {
-    return std::span(neighbours_)
-        .subspan(first_neighbour_[i], first_neighbour_[i + 1] - first_neighbour_[i]);
-  }
-
-  /// Of each feature the nearest ones within the band, the nearer first; of equals the earlier.
-  void find_neighbours() {
-    const SquaredBand band(options_.nearest * sigma_, options_.farthest * sigma_);
-    const std::size_t count = corners_.size();
-    const float* const x = places_[0].data();
-    const float* const y = places_[1].data();
-    const float* const z = places_[2].data();
-    squared_.resize(count);
-    neighbours_.clear();
-    first_neighbour_.assign(1, 0);
-    for (std::size_t i = 0; i < count; ++i) {
-      for (std::size_t j = 0; j < count; ++j) {
-        const float dx = x[j] - x[i];
-        const float dy = y[j] - y[i];
-        const float dz = z[j] - z[i];
-        squared_[j] = dx * dx + (dy * dy + dz * dz);
-      }
-      near_.clear();
-      for (std::size_t j = 0; j < count; ++j)
-        if (squared_[j] >= band.least && squared_[j] <= band.most)
-          // Positive floats are in the order of their bits.
-          near_.push_back(std::uint64_t{std::bit_cast<std::uint32_t>(squared_[j])} << 32 | j);
-      const auto kept = std::min<std::size_t>(near_.size(), options_.neighbours);
-      std::ranges::partial_sort(near_, near_.begin() + static_cast<std::ptrdiff_t>(kept));
-      for (std::size_t k = 0; k < kept; ++k)
-        neighbours_.push_back(static_cast<std::uint16_t>(near_[k] & 0xffff));
-      first_neighbour_.push_back(neighbours_.size());
-    }
-  }
 
   /// Those of a feature and two of its neighbours that no feature before it has entered: one has
   /// that is neighbour to this one and has the other two as its own neighbours.
   void enter_triangles_of(std::size_t i) {
-    const Neighbours near = neighbours_of(i);
+    const std::span<const std::uint16_t> near = near_.of(i);
     const double nearest = options_.nearest * sigma_;
     for (std::size_t a = 0; a < near.size(); ++a) number_[near[a]] = static_cast<std::uint16_t>(a);
     number_[i] = static_cast<std::uint16_t>(near.size());
@@ -208,7 +156,7 @@ class LevelTriplets {
     entered_.assign(near.size() * width, 0);
     for (std::size_t a = 0; a < near.size(); ++a)
       if (near[a] < i)
-        for (const std::uint16_t other : neighbours_of(near[a]))
+        for (const std::uint16_t other : near_.of(near[a]))
           if (number_[other] != kNobody) entered_[a * width + number_[other]] = 1;
     const auto entered_by = [&](std::size_t a, std::size_t b) {
       return entered_[a * width + near.size()] != 0 && entered_[a * width + b] != 0;
@@ -306,18 +254,13 @@ class LevelTriplets {
     result_.push_back(triplet);
   }
 
-  const OrientedFeatures& features_;
   const TripletOptions& options_;
   std::vector<Triplet>& result_;
   std::size_t first_ = 0;
   float sigma_ = 1;
   std::vector<Corner> corners_;
-  std::array<std::vector<float>, 3> places_;  ///< of the corners, axis by axis
-  std::vector<std::uint16_t> neighbours_;
-  std::vector<std::size_t> first_neighbour_;
+  NearFeatures near_;
   // Of the feature at hand:
-  std::vector<float> squared_;         ///< distances from it
-  std::vector<std::uint64_t> near_;    ///< what lies in the band: squared distance, feature
   std::vector<std::uint16_t> number_;  ///< which of its neighbours each feature is
   std::vector<std::uint8_t> entered_;  ///< whether an earlier neighbour has another, or itself
 };
@@ -355,14 +298,10 @@ std::vector<Triplet> sorted(const std::vector<Triplet>& triplets) {
 std::vector<Triplet> local_triplets(const OrientedFeatures& features,
                                     const TripletOptions& options) {
   std::vector<Triplet> result;
-  LevelTriplets level(features, options, result);
-  const std::vector<OrientedFeature>& all = features.features;
-  for (std::size_t first = 0; first < all.size();) {
-    std::size_t last = first;
-    while (last < all.size() && all[last].level == all[first].level) ++last;
-    level.add(first, last);
-    first = last;
-  }
+  LevelTriplets triplets(options, result);
+  for_each_level(features, [&](auto of_level, float sigma, std::size_t first) {
+    triplets.add(of_level, sigma, first);
+  });
   return sorted(result);
 }
 

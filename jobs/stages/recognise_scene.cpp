@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "jobs/stages/match_triplets.hpp"
+#include "kernels/feature_pair.hpp"
 #include "kernels/feature_triangle.hpp"
 #include "kernels/overlap.hpp"
 #include "kernels/pose_clusters.hpp"
@@ -21,6 +22,11 @@ using kernels::Similarity;
 
 /// A scene's feature may be a little out of the band that the model's is in.
 constexpr double kBandSlack = 1.075;
+/// Coarse scans and small pieces have few features: with fewer triplets pairs are looked for, too.
+constexpr std::int64_t kFewTriplets = 10'000;
+constexpr int kScenePairNeighbours = 16;
+constexpr double kPairWeight = 0.5;  ///< of a pair's vote: chance has it agree more often
+
 constexpr std::size_t kShortlist = 400;            ///< models with the best votes
 constexpr std::size_t kMostMatches = 8000;         ///< of one model, the weightiest;
 constexpr std::size_t kMatchesTogether = 600'000;  ///< if there are many models, fewer of each
@@ -33,11 +39,16 @@ constexpr int kFewClusters = 24;             ///< of each of more models than th
 constexpr std::size_t kModelsByGlance = 40;  ///< go on: those that look best,
 constexpr std::size_t kModelsByWeight = 30;  ///< and those of the heaviest clusters besides
 constexpr std::int64_t kCoarseSamples = 200;
-constexpr std::size_t kCoarseByOverlap = 5;  ///< of one model, are refined a little
-constexpr std::size_t kCoarseByWeight = 3;   ///< besides, whatever they look like
+constexpr std::size_t kCoarseByWeight = 3;  ///< besides, whatever they look like
 constexpr std::int64_t kMiddleSamples = 400;
-constexpr std::size_t kRefinedPerModel = 4;
-constexpr std::size_t kRefinedTogether = 60;
+struct Effort {
+  std::size_t coarse;    ///< poses of one model by overlap, are refined a little
+  std::size_t refined;   ///< of one model
+  std::size_t together;  ///< of all
+};
+constexpr Effort kUsual = {.coarse = 5, .refined = 4, .together = 60};
+constexpr Effort kOfPairs = {
+    .coarse = 8, .refined = 6, .together = 120};  // say little by themselves
 constexpr std::int64_t kFineSamples = 2000;
 constexpr std::int64_t kExplainedSamples = 4000;
 
@@ -45,7 +56,14 @@ constexpr kernels::OverlapOptions kCoarse = {.match = 0.02, .conflict = 0.06, .m
 /// Noise and triangulation grow with the edges: of coarse scans the surfaces that are one lie
 /// farther apart. In mean edge lengths of the coarser one, and at most so many diagonals.
 constexpr double kMatchEdges = 0.5;
-constexpr double kWidestMatch = 0.02;
+constexpr double kWidestMatch = 0.03;
+constexpr double kHeld = 0.03;  ///< stability of which half is missing
+/// Poses tried turned: loosely, as turns are tried in steps.
+constexpr kernels::OverlapOptions kTurning = {.match = 0.03, .conflict = 0.06, .min_cosine = 0.6};
+constexpr std::size_t kTurnedTogether = 6;
+constexpr std::size_t kTurnedPerPose = 3;
+constexpr double kTurnedShare = 0.7;  ///< of the agreement before, to go on
+
 constexpr kernels::PoseTolerance kSupport = {.log_scale = 0.15, .distance = 0.06, .angle = 0.25};
 
 kernels::TripletOptions scene_triplets() {
@@ -53,6 +71,15 @@ kernels::TripletOptions scene_triplets() {
   options.nearest /= kBandSlack;
   options.farthest *= kBandSlack;
   options.min_height *= 0.9;
+  options.every_order = true;
+  return options;
+}
+
+kernels::PairOptions scene_pairs() {
+  kernels::PairOptions options;
+  options.neighbours = kScenePairNeighbours;
+  options.nearest /= kBandSlack;
+  options.farthest *= kBandSlack;
   options.every_order = true;
   return options;
 }
@@ -73,7 +100,7 @@ struct Pose {
 struct Listed {
   std::int64_t model = 0;
   RecognitionModel record;
-  kernels::PoseVotes votes;
+  kernels::PoseVotes votes;  ///< of triplets
   std::optional<kernels::SampleTree> tree;
   std::vector<Pose> poses;
 };
@@ -94,18 +121,23 @@ class Recogniser {
     matches_ = match_triplets(library_, triplets, {}, context_);
     result_.scene_triplets = matches_.scene_triplets;
     result_.matches = static_cast<std::int64_t>(matches_.matches.size());
+    if (result_.scene_triplets < kFewTriplets)
+      pairs_ = kernels::local_pairs(scene_.features, scene_pairs());
     shortlist();
     for_each(shortlist_.size(), [this](std::size_t i) { find_poses(i); });
     choose_models();
     for_each(shortlist_.size(), [this](std::size_t i) { look_closer(shortlist_[i]); });
     choose_poses();
     for_each(poses_.size(), [this](std::size_t i) { verify(poses_[i]); });
+    try_turned();
     rank();
     find_objects();
     return std::move(result_);
   }
 
  private:
+  const Effort& effort() const { return pairs_.empty() ? kUsual : kOfPairs; }
+
   template <typename Body>
   void for_each(std::size_t count, const Body& body) {
     context_.workers.for_blocks(static_cast<std::int64_t>(count), 1, [&](engine::IndexRange range) {
@@ -114,7 +146,7 @@ class Recogniser {
   }
 
   /// Models that got votes, those first that got the most beyond what chance gives a model with so
-  /// many triplets, in standard deviations.
+  /// many triplets, in standard deviations. Those without votes may have pairs.
   void shortlist() {
     const std::vector<io::ModelInfo>& models = library_.models();
     const double votes = std::accumulate(matches_.votes.begin(), matches_.votes.end(), 0.0);
@@ -122,9 +154,9 @@ class Recogniser {
     std::vector<double> surplus(models.size());
     std::vector<std::int64_t> order;
     for (std::size_t i = 0; i < models.size(); ++i) {
-      if (matches_.votes[i] <= 0) continue;
+      if (matches_.votes[i] <= 0 && pairs_.empty()) continue;
       const double chance = votes * static_cast<double>(models[i].triplets) / triplets;
-      surplus[i] = (matches_.votes[i] - chance) / std::sqrt(chance);
+      if (chance > 0) surplus[i] = (matches_.votes[i] - chance) / std::sqrt(chance);
       order.push_back(static_cast<std::int64_t>(i));
     }
     std::ranges::stable_sort(order, std::ranges::greater(),
@@ -151,30 +183,68 @@ class Recogniser {
       matches.resize(most);
       std::ranges::sort(matches, heavier);
     }
-    // Here a match shares its triangle with others of this model only: what agrees on a pose must
-    // not depend on how many models the library has.
     std::ranges::stable_sort(matches, {}, &TripletMatch::triangle);
-    std::vector<kernels::PoseVote> votes;
-    votes.reserve(matches.size());
+    listed.votes = votes(
+        matches, [](const TripletMatch& match) { return match.triangle; },
+        [&](const TripletMatch& match) {
+          return kernels::similarity_between(
+              kernels::feature_triangle(model.features, match.model_corners),
+              kernels::feature_triangle(scene_.features, match.scene_corners));
+        },
+        model);
+    add_clusters(listed.votes, 1, index);
+    if (!pairs_.empty() && index < kFewModels) {
+      const std::vector<kernels::FeaturePair> pairs = kernels::local_pairs(model.features, {});
+      const kernels::PoseVotes of_pairs = votes(
+          kernels::match_pairs(pairs_, pairs), [](const kernels::PairMatch& m) { return m.scene; },
+          [&](const kernels::PairMatch& m) {
+            return kernels::similarity_between(pairs[m.model], pairs_[m.scene]);
+          },
+          model);
+      add_clusters(of_pairs, kPairWeight, index);
+    }
+    look(listed, kGlanceSamples, coarse);
+    keep(listed.poses, kGlanced, kCoarseByWeight);
+  }
+
+  /// The poses that matches, those of one part of the scene side by side, vote for. A match shares
+  /// its part with others of this model only: what agrees on a pose must not depend on how many
+  /// models the library has.
+  template <typename Match, typename PartOf, typename PoseOf>
+  static kernels::PoseVotes votes(const std::vector<Match>& matches, const PartOf& part_of,
+                                  const PoseOf& pose_of, const RecognitionModel& model) {
+    struct Weighed {
+      double weight;
+      std::size_t match;
+    };
+    std::vector<Weighed> weighed;
+    weighed.reserve(matches.size());
     for (auto first = matches.begin(); first != matches.end();) {
-      const auto last = std::find_if(first, matches.end(), [&](const TripletMatch& match) {
-        return match.triangle != first->triangle;
+      const auto last = std::find_if(first, matches.end(), [&](const Match& match) {
+        return part_of(match) != part_of(*first);
       });
       const double weight = 1.0 / static_cast<double>(last - first);
       for (; first != last; ++first)
-        votes.push_back({kernels::similarity_between(
-                             kernels::feature_triangle(model.features, first->model_corners),
-                             kernels::feature_triangle(scene_.features, first->scene_corners)),
-                         weight});
+        weighed.push_back({weight, static_cast<std::size_t>(first - matches.begin())});
     }
-    listed.votes = kernels::PoseVotes(votes, model.centre.cast<double>(), model.diagonal);
-    kernels::ClusterOptions clusters;
-    if (shortlist_.size() > kFewModels) clusters.most = kFewClusters;
-    if (shortlist_.size() > kFewModels) clusters.seeds = 4 * kFewClusters;
-    for (const kernels::PoseCluster& cluster : listed.votes.clusters(clusters))
-      listed.poses.push_back({.listed = index, .pose = cluster.pose, .cluster = cluster.weight});
-    look(listed, kGlanceSamples, coarse);
-    keep(listed.poses, kGlanced, kCoarseByWeight);
+    if (weighed.size() > kMostMatches) {
+      std::ranges::stable_sort(weighed, std::ranges::greater(), &Weighed::weight);
+      weighed.resize(kMostMatches);
+      std::ranges::sort(weighed, {}, &Weighed::match);
+    }
+    std::vector<kernels::PoseVote> result;
+    result.reserve(weighed.size());
+    for (const auto& [weight, match] : weighed) result.push_back({pose_of(matches[match]), weight});
+    return {result, model.centre.cast<double>(), model.diagonal};
+  }
+
+  void add_clusters(const kernels::PoseVotes& votes, double weight, std::size_t index) {
+    kernels::ClusterOptions options;
+    if (shortlist_.size() > kFewModels) options.most = kFewClusters;
+    if (shortlist_.size() > kFewModels) options.seeds = 4 * kFewClusters;
+    for (const kernels::PoseCluster& cluster : votes.clusters(options))
+      shortlist_[index].poses.push_back(
+          {.listed = index, .pose = cluster.pose, .cluster = weight * cluster.weight});
   }
 
   /// Of many models only those that are worth a closer look.
@@ -202,13 +272,18 @@ class Recogniser {
   void look_closer(Listed& listed) {
     const RecognitionModel& model = listed.record;
     look(listed, kCoarseSamples, coarse);
-    keep(listed.poses, kCoarseByOverlap, kCoarseByWeight);
-    for (Pose& pose : listed.poses)
-      pose.pose = kernels::refined(model.samples, model.diagonal, pose.pose, tree_,
-                                   {.reach = {0.08, 0.05}, .iterations = 3, .count = 200});
+    keep(listed.poses, effort().coarse, kCoarseByWeight);
+    for (Pose& pose : listed.poses) approach(pose);
     leave_out_repeated(listed);
     look(listed, kMiddleSamples, [&](const Pose& pose) { return close(model, pose.pose); });
-    keep(listed.poses, kRefinedPerModel, 0);
+    keep(listed.poses, effort().refined, 0);
+  }
+
+  /// From as far as clusters of votes may lie.
+  void approach(Pose& pose) const {
+    const RecognitionModel& model = shortlist_[pose.listed].record;
+    pose.pose = kernels::refined(model.samples, model.diagonal, pose.pose, tree_,
+                                 {.reach = {0.08, 0.05}, .iterations = 3, .count = 200});
   }
 
   /// As close as a pose of the model can be expected to lie.
@@ -263,7 +338,7 @@ class Recogniser {
     for (Listed& listed : shortlist_)
       poses_.insert(poses_.end(), listed.poses.begin(), listed.poses.end());
     std::ranges::stable_sort(poses_, std::ranges::greater(), &Pose::coarse);
-    poses_.resize(std::min(poses_.size(), kRefinedTogether));
+    poses_.resize(std::min(poses_.size(), effort().together));
     std::vector<std::uint8_t> wanted(shortlist_.size());
     for (const Pose& pose : poses_) wanted[pose.listed] = 1;
     for_each(shortlist_.size(), [&](std::size_t i) {
@@ -279,11 +354,45 @@ class Recogniser {
     measure(pose, {});
   }
 
+  /// A cup may have been found with its handle anywhere: the best poses are tried turned, as far as
+  /// the model is nearly symmetric.
+  void try_turned() {
+    std::ranges::stable_sort(poses_, std::ranges::greater(), &Pose::score);
+    std::vector<std::vector<Pose>> better(std::min(kTurnedTogether, poses_.size()));
+    for_each(better.size(), [&](std::size_t i) { better[i] = better_turned(poses_[i]); });
+    for (const std::vector<Pose>& of_pose : better)
+      poses_.insert(poses_.end(), of_pose.begin(), of_pose.end());
+  }
+
+  std::vector<Pose> better_turned(const Pose& pose) const {
+    const RecognitionModel& model = shortlist_[pose.listed].record;
+    const auto glance = [&](const Similarity& similarity) {
+      return kernels::overlap(model.samples, model.diagonal, similarity, tree_, kTurning,
+                              kCoarseSamples)
+          .agreement();
+    };
+    const double enough = kTurnedShare * glance(pose.pose);
+    std::vector<Pose> tried;
+    for (const Similarity& other : kernels::turned(model.samples, model.diagonal, pose.pose, tree_,
+                                                   close(model, pose.pose), kFineSamples))
+      if (const double coarse = glance(other); coarse > enough)
+        tried.push_back(
+            {.listed = pose.listed, .pose = other, .cluster = pose.cluster, .coarse = coarse});
+    keep(tried, kTurnedPerPose, 0);
+    for (Pose& other : tried) {
+      approach(other);
+      verify(other);
+    }
+    std::erase_if(tried, [&](const Pose& other) { return other.score <= pose.score; });
+    return tried;
+  }
+
   /// Against what of the scene is not used up yet.
   void measure(Pose& pose, std::span<const std::uint8_t> used) const {
     const Listed& listed = shortlist_[pose.listed];
     const RecognitionModel& model = listed.record;
-    const kernels::OverlapOptions options = close(model, pose.pose);
+    kernels::OverlapOptions options = close(model, pose.pose);
+    options.stability = true;
     pose.overlap = kernels::overlap(model.samples, model.diagonal, pose.pose, tree_, options,
                                     kFineSamples, used);
     const auto marks = kernels::explained(*listed.tree, model.diagonal, pose.pose, scene_.samples,
@@ -293,16 +402,19 @@ class Recogniser {
     pose.score = score_of(pose);
   }
 
-  /// Measured on thousands of right and wrong poses: most of all a right one is not contradicted
-  /// and lies close; how much of model and scene match says less, as either may be a small part of
-  /// the other. A pose that surfaces alone speak for is half as good as one that triplets want,
-  /// too.
+  /// Measured on thousands of right and wrong poses: most of all a right one lies close, is not
+  /// contradicted, and is held fast by what matches; how much of model and scene match says less,
+  /// as either may be a small part of the other, but not both. A pose that surfaces alone speak for
+  /// is worth a little less than one that triplets want, too.
   static double score_of(const Pose& pose) {
     const kernels::Overlap& o = pose.overlap;
     if (o.match <= 0) return 0;
-    const double whole = o.closeness * o.match / (o.match + o.conflict);
-    return std::sqrt(o.match) * std::pow(whole, 4) * std::pow(pose.explained, 0.1) *
-           (10 + pose.support) / (20 + pose.support);
+    const double unopposed = o.match / (o.match + o.conflict);
+    const double either = o.match + pose.explained - o.match * pose.explained;
+    const double wanted = (10 + pose.support) / (20 + pose.support);
+    const double held = o.stability / (o.stability + kHeld);
+    return std::sqrt(o.match * either) * std::pow(held, 0.75) * std::pow(unopposed, 1.5) *
+           std::pow(o.closeness, 8) * std::pow(pose.explained * wanted, 0.25);
   }
 
   Candidate candidate_of(const Pose& pose) const {
@@ -315,6 +427,7 @@ class Recogniser {
     candidate.closeness = pose.overlap.closeness;
     candidate.match = pose.overlap.match;
     candidate.conflict = pose.overlap.conflict;
+    candidate.stability = pose.overlap.stability;
     candidate.explained = pose.explained;
     candidate.score = pose.score;
     const Similarity from_file = {.translation = -listed.record.origin};
@@ -357,6 +470,7 @@ class Recogniser {
   const engine::RunContext& context_;
   kernels::SampleTree tree_;
   TripletMatches matches_;
+  std::vector<kernels::FeaturePair> pairs_;  ///< of the scene, if it has few triplets
   std::vector<Listed> shortlist_;
   std::vector<Pose> poses_;
   Recognition result_;

@@ -12,7 +12,7 @@
 namespace semigeo::jobs {
 
 struct RecognitionOptions {
-  double min_score = 0.18;  ///< below it a model is not in the scene; see bench/RECOGNITION.md
+  double min_score = 0.15;  ///< below it a model is not in the scene; see bench/RECOGNITION.md
 };
 
 /// A model and where it seems to be.
@@ -24,6 +24,7 @@ struct Candidate {
   double match = 0;        ///< share of the model's surface that lies on the scene's
   double conflict = 0;     ///< share near the scene's surface that disagrees with it
   double closeness = 0;    ///< of what matches: 1 on the scene's surface, 0 at the tolerance
+  double stability = 0;    ///< how firmly what matches holds the model: kernels::Overlap
   double explained = 0;    ///< share of the scene's surface that lies on the model's
   double score = 0;
   kernels::Similarity pose;  ///< model to scene, in coordinates of the files

@@ -54,6 +54,7 @@ json candidates_json(std::span<const Candidate> candidates, const io::HashLibrar
                     {"match", candidate.match},
                     {"conflict", candidate.conflict},
                     {"closeness", candidate.closeness},
+                    {"stability", candidate.stability},
                     {"explained", candidate.explained},
                     {"pose", pose_json(candidate.pose)}});
   }

@@ -8,20 +8,25 @@
 
 namespace semigeo::tests {
 
-SampleLibrary::SampleLibrary(int count, const ModelSize& size) : cells(kernels::kTripletCells + 1) {
-  std::vector<std::pair<std::uint32_t, kernels::Posting>> entries;
+SampleLibrary::SampleLibrary(int count, const ModelSize& size) {
   for (int i = 0; i < count; ++i) {
     models.push_back(generated_model(i, size));
     triplets.push_back(generated_triplets(i, models.back(), size));
-    for (const kernels::Triplet& t : triplets.back())
-      entries.push_back({t.cell,
-                         {.invariants = t.invariants,
-                          .model = static_cast<std::uint32_t>(i),
-                          .corners = t.corners}});
   }
+  post();
+}
+
+void SampleLibrary::post() {
+  std::vector<std::pair<std::uint32_t, kernels::Posting>> entries;
+  for (std::uint32_t model = 0; model < triplets.size(); ++model)
+    for (const kernels::Triplet& t : triplets[model])
+      entries.push_back(
+          {t.cell, {.invariants = t.invariants, .model = model, .corners = t.corners}});
   std::ranges::sort(entries, {}, [](const auto& entry) {
     return std::tie(entry.first, entry.second.model, entry.second.corners);
   });
+  postings.clear();
+  cells.assign(kernels::kTripletCells + 1, 0);
   for (const auto& [cell, posting] : entries) {
     postings.push_back(posting);
     ++cells[cell + 1];

@@ -14,6 +14,9 @@ namespace semigeo::tests {
 struct SampleLibrary {
   explicit SampleLibrary(int models, const ModelSize& size = {});
 
+  /// Postings and cells anew, of the triplets there are.
+  void post();
+
   std::vector<kernels::RecognitionModel> models;
   std::vector<std::vector<kernels::Triplet>> triplets;
   std::vector<kernels::Posting> postings;

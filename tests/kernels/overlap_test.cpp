@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
 
 #include "kernels/surface_samples.hpp"
 #include "tests/support/random_similarity.hpp"
@@ -110,6 +111,70 @@ TEST(Overlap, IsWholeInTheRightPoseAndNoneElsewhere) {
   const Overlap against = overlap(inverted, body.diagonal, truth, tree, {}, 1000);
   EXPECT_EQ(against.match, 0);
   EXPECT_GT(against.conflict, 0.99);
+}
+
+TEST(Overlap, StabilityIsOfWhatMatches) {
+  const Body body;
+  const SurfaceSamples model = body.samples(1000);
+  const auto stability = [&](const SurfaceSamples& scene) {
+    return overlap(model, body.diagonal, {}, SampleTree(scene), {.stability = true}, 1000)
+        .stability;
+  };
+  const double whole = stability(body.samples(2000));
+  EXPECT_GT(whole, 0.01);
+  // A small piece is more like a sphere's, which slips along itself.
+  Body piece = body;
+  std::erase_if(piece.triangles, [&](const auto& t) { return body.points[t[0]].x() < 0.85F; });
+  EXPECT_LT(stability(piece.samples(2000)), 0.5 * whole);
+  EXPECT_EQ(overlap(model, body.diagonal, {}, SampleTree(model), {}, 1000).stability, 0)
+      << "nobody asked";
+}
+
+/// A cup: a slender body of revolution with a knob at its side.
+SurfaceSamples cup() {
+  SurfaceSamples samples;
+  for (const Vector3d& u : shapes::icosphere(4).points) {
+    const double knob = 0.4 * std::exp(-30 * (u - Vector3d(1, 0, 0)).squaredNorm());
+    const Vector3d p = (1 + knob) * u.cwiseProduct(Vector3d(0.6, 0.6, 1.2 + 0.3 * u.z()));
+    samples.points.push_back(p.cast<float>());
+    samples.normals.push_back(
+        u.cwiseQuotient(Vector3d(0.6, 0.6, 1.2 + 0.3 * u.z())).normalized().cast<float>());
+  }
+  samples.spacing = 0.08F;
+  return samples;
+}
+
+// With the knob on the wrong side nearly everything fits: one of the turns puts it right.
+TEST(Overlap, OneOfTheTurnsPutsACupRight) {
+  const SurfaceSamples model = cup();
+  const SampleTree tree(model);
+  const double diagonal = 3;
+  Similarity wrong;
+  wrong.rotation = Eigen::AngleAxisd(2.0, Vector3d::UnitZ()).toRotationMatrix();
+  const auto turns = turned(model, diagonal, wrong, tree, {}, 2000);
+  EXPECT_EQ(turns.size(), 3U + 35U);
+  double least = std::numbers::pi;
+  for (const Similarity& pose : turns) {
+    EXPECT_NEAR(pose.scale, 1, 1e-9);
+    least = std::min(least, rotation_between(pose.rotation, Eigen::Matrix3d::Identity()));
+  }
+  EXPECT_LT(least, 5.5 * std::numbers::pi / 180);  // half a step of ten degrees, and the knob
+}
+
+TEST(Overlap, WhatCannotSlipIsTurnedByHalfTurnsOnly) {
+  const Body body;
+  const SurfaceSamples model = body.samples(1000);
+  const auto turns = turned(model, body.diagonal, {}, SampleTree(model), {}, 1000);
+  ASSERT_EQ(turns.size(), 3U);
+  Similarity all;
+  for (const Similarity& pose : turns) {
+    EXPECT_NEAR(rotation_between(pose.rotation, Eigen::Matrix3d::Identity()), std::numbers::pi,
+                1e-6);
+    all = pose * all;
+  }
+  EXPECT_LT(rotation_between(all.rotation, Eigen::Matrix3d::Identity()), 1e-6);
+  EXPECT_LT(all.translation.norm(), 1e-6);  // about one point
+  EXPECT_TRUE(turned({}, 1, {}, SampleTree(model), {}, 100).empty());
 }
 
 TEST(Overlap, AHalfMatchesHalfWithoutMuchConflict) {

@@ -8,40 +8,12 @@
 #include <random>
 #include <set>
 
-#include "tests/support/random_similarity.hpp"
+#include "tests/support/random_features.hpp"
 
 namespace semigeo::kernels {
 namespace {
 
 using Eigen::Vector3f;
-
-/// Features of one level, of scale 1, at random places of a cube that is 20 wide.
-OrientedFeatures random_features(int count, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<float> uniform(-1, 1);
-  OrientedFeatures result;
-  result.level_scale = {1};
-  for (int i = 0; i < count; ++i) {
-    OrientedFeature feature;
-    feature.position = 10 * Vector3f(uniform(random), uniform(random), uniform(random));
-    feature.normal = random_direction(random).cast<float>();
-    feature.scale_free_gaussian = uniform(random);
-    feature.scale_free_mean = uniform(random);
-    feature.code =
-        feature_code(i % 2 == 0 ? FeatureKind::gaussian : FeatureKind::mean, uniform(random) > 0);
-    result.features.push_back(feature);
-  }
-  return result;
-}
-
-OrientedFeatures moved(OrientedFeatures features, const Similarity& similarity) {
-  for (OrientedFeature& feature : features.features) {
-    feature.position = similarity.apply(feature.position.cast<double>()).cast<float>();
-    feature.normal = (similarity.rotation * feature.normal.cast<double>()).cast<float>();
-  }
-  for (float& scale : features.level_scale) scale *= static_cast<float>(similarity.scale);
-  return features;
-}
 
 /// Whether a triplet of `scene` finds `triplet`.
 bool finds(const std::vector<Triplet>& scene, const Triplet& triplet) {
