@@ -32,7 +32,7 @@ constexpr std::size_t kMostMatches = 8000;         ///< of one model, the weight
 constexpr std::size_t kMatchesTogether = 600'000;  ///< if there are many models, fewer of each
 
 // Each look at a pose costs more than the one before, and fewer poses are looked at.
-constexpr std::int64_t kGlanceSamples = 60;
+constexpr std::int64_t kGlanceSamples = 40;
 constexpr std::size_t kGlanced = 40;  ///< of one model, go on
 constexpr std::size_t kFewModels = 40;
 constexpr int kFewClusters = 24;             ///< of each of more models than that; and of these
