@@ -12,10 +12,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kScaleTolerance = 0.35F;
-constexpr float kCurvatureTolerance = 0.25F;
-constexpr float kCurvatureSlope = 0.35F;
-constexpr float kCosNormalTolerance = 0.866F;  // 30 degrees
 /// Of both normals' sum across the pair: with less, noise turns the frame.
 constexpr float kLeastAcross = 0.5F;
 

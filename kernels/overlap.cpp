@@ -67,6 +67,14 @@ std::size_t bounded(std::int64_t count, const SurfaceSamples& samples) {
   return std::min(static_cast<std::size_t>(count), samples.points.size());
 }
 
+/// Of the first n samples.
+Vector3d middle_of(const SurfaceSamples& samples, std::size_t n) {
+  Vector3d middle = Vector3d::Zero();
+  for (std::size_t i = 0; i < n; ++i)
+    middle += samples.points[i].cast<double>() / static_cast<double>(n);
+  return middle;
+}
+
 /// Whether q with normal n, the sample nearest to p, is the surface that p lies on. Samples stand
 /// for the surface round them: beside them it goes on.
 bool on_surface(const Vector3f& p, const Vector3f& q, const Vector3f& n, float tolerance,
@@ -205,9 +213,7 @@ std::vector<Similarity> turned(const SurfaceSamples& model, double diagonal, con
   std::vector<Similarity> result;
   const std::size_t n = bounded(count, model);
   if (n == 0) return result;
-  Vector3d middle = Vector3d::Zero();
-  for (std::size_t i = 0; i < n; ++i)
-    middle += model.points[i].cast<double>() / static_cast<double>(n);
+  const Vector3d middle = middle_of(model, n);
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < n; ++i) {
     const Vector3d arm = model.points[i].cast<double>() - middle;
@@ -256,9 +262,7 @@ Similarity refined(const SurfaceSamples& model, double diagonal, const Similarit
   using Matrix7d = Eigen::Matrix<double, 7, 7>;
   constexpr int kFewest = 12;
   const std::size_t n = bounded(options.count, model);
-  Vector3d centre = Vector3d::Zero();
-  for (std::size_t i = 0; i < n; ++i)
-    centre += model.points[i].cast<double>() / static_cast<double>(n);
+  const Vector3d centre = middle_of(model, n);
   Similarity pose = start;
   std::vector<std::int64_t> nearest(n, -1);  // to each sample, before the last step
   for (const double reach : options.reach)

@@ -16,18 +16,14 @@ using Eigen::Vector3f;
 using Corners = std::array<std::uint16_t, 3>;
 
 constexpr float kRatioTolerance = 0.09F;
-constexpr float kScaleTolerance = 0.35F;
 constexpr float kLeastSecondRatio = 0.5F;
 constexpr float kLeastThirdRatio = 0.08F;
 constexpr float kLeastScale = 0.693F;  // log 2
 
-// Curvatures are stored on a scale on which 0.25 + 0.35 |q| is one unit everywhere.
-constexpr float kCurvatureTolerance = 0.25F;
-constexpr float kCurvatureSlope = 0.35F;
+// Curvatures are stored on a scale on which their tolerance is one unit everywhere.
 constexpr float kMostWarped = 6;
 
-constexpr float kCosNormalTolerance = 0.866F;  // 30 degrees
-constexpr float kNormalChord = 0.5177F;        // 2 sin 15 degrees
+constexpr float kNormalChord = 0.5177F;  // 2 sin 15 degrees
 
 /// Bytes for [low, high].
 struct Bytes {

@@ -60,6 +60,12 @@ struct Triplet {
   friend bool operator==(const Triplet&, const Triplet&) = default;
 };
 
+/// How far what is the same feature, seen twice, may differ.
+inline constexpr float kScaleTolerance = 0.35F;       ///< of log(length / sigma)
+inline constexpr float kCurvatureTolerance = 0.25F;   ///< of scale-free curvatures,
+inline constexpr float kCurvatureSlope = 0.35F;       ///< and so much of their size
+inline constexpr float kCosNormalTolerance = 0.866F;  ///< between normals: 30 degrees
+
 struct TripletOptions {
   int neighbours = 10;   ///< of each feature, the nearest within the band
   double nearest = 2.5;  ///< band of side lengths, in sigma of the level

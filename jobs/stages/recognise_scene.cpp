@@ -66,22 +66,23 @@ constexpr double kTurnedShare = 0.7;  ///< of the agreement before, to go on
 
 constexpr kernels::PoseTolerance kSupport = {.log_scale = 0.15, .distance = 0.06, .angle = 0.25};
 
-kernels::TripletOptions scene_triplets() {
-  kernels::TripletOptions options;
+/// What a scene must enter to find what a model has.
+template <typename Options>
+Options as_scene(Options options) {
   options.nearest /= kBandSlack;
   options.farthest *= kBandSlack;
-  options.min_height *= 0.9;
   options.every_order = true;
   return options;
 }
 
-kernels::PairOptions scene_pairs() {
-  kernels::PairOptions options;
-  options.neighbours = kScenePairNeighbours;
-  options.nearest /= kBandSlack;
-  options.farthest *= kBandSlack;
-  options.every_order = true;
+kernels::TripletOptions scene_triplets() {
+  kernels::TripletOptions options = as_scene(kernels::TripletOptions{});
+  options.min_height *= 0.9;
   return options;
+}
+
+kernels::PairOptions scene_pairs() {
+  return as_scene(kernels::PairOptions{.neighbours = kScenePairNeighbours});
 }
 
 /// A pose of a model, more and more closely looked at. Poses are from the model's own coordinates
@@ -240,8 +241,7 @@ class Recogniser {
 
   void add_clusters(const kernels::PoseVotes& votes, double weight, std::size_t index) {
     kernels::ClusterOptions options;
-    if (shortlist_.size() > kFewModels) options.most = kFewClusters;
-    if (shortlist_.size() > kFewModels) options.seeds = 4 * kFewClusters;
+    if (shortlist_.size() > kFewModels) options = {.seeds = 4 * kFewClusters, .most = kFewClusters};
     for (const kernels::PoseCluster& cluster : votes.clusters(options))
       shortlist_[index].poses.push_back(
           {.listed = index, .pose = cluster.pose, .cluster = weight * cluster.weight});
