@@ -5,7 +5,7 @@
 #include <string>
 
 #include "io/complete_file.hpp"
-#include "kernels/remesh_counts.hpp"
+#include "kernels/repair/remesh_counts.hpp"
 
 namespace semigeo::io {
 

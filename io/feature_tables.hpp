@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "io/content_digest.hpp"
-#include "kernels/features.hpp"
+#include "kernels/features/features.hpp"
 
 namespace semigeo::io {
 

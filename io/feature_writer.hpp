@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <span>
 
-#include "kernels/features.hpp"
+#include "kernels/features/features.hpp"
 
 namespace semigeo::io {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "io/for_each.hpp"
-#include "kernels/recognition_model.hpp"
+#include "kernels/recognition/recognition_model.hpp"
 
 namespace semigeo::io {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "io/complete_file.hpp"
-#include "kernels/recognition_model.hpp"
+#include "kernels/recognition/recognition_model.hpp"
 
 namespace semigeo::io {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "kernels/triangle_mesh.hpp"
+#include "kernels/surface/triangle_mesh.hpp"
 
 namespace semigeo::io {
 

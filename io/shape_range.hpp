@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/triplet.hpp"
+#include "kernels/recognition/triplet.hpp"
 
 namespace semigeo::io {
 

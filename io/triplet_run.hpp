@@ -10,7 +10,7 @@
 #include "io/binary_file.hpp"
 #include "io/packed_model.hpp"
 #include "io/shape_range.hpp"
-#include "kernels/recognition_model.hpp"
+#include "kernels/recognition/recognition_model.hpp"
 
 namespace semigeo::io {
 

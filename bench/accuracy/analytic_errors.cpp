@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "bench/support/quantile.hpp"
-#include "kernels/surface_builder.hpp"
-#include "kernels/vertex_order.hpp"
+#include "kernels/repair/surface_builder.hpp"
+#include "kernels/surface/vertex_order.hpp"
 
 namespace semigeo::accuracy {
 namespace {

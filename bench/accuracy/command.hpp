@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "kernels/evolution.hpp"
+#include "kernels/evolution/evolution.hpp"
 
 namespace semigeo::accuracy {
 

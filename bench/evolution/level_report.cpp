@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "jobs/stages/part_measures.hpp"
-#include "kernels/edge_groups.hpp"
+#include "kernels/surface/edge_groups.hpp"
 
 namespace semigeo::evolution {
 namespace {

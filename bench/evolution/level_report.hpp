@@ -6,8 +6,8 @@
 
 #include "engine/run_context.hpp"
 #include "jobs/stages/evolving_surface.hpp"
-#include "kernels/remeshing.hpp"
-#include "kernels/surface.hpp"
+#include "kernels/repair/remeshing.hpp"
+#include "kernels/surface/surface.hpp"
 
 namespace semigeo::evolution {
 

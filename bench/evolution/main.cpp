@@ -19,8 +19,8 @@
 #include "io/error.hpp"
 #include "io/scan_reader.hpp"
 #include "jobs/stages/evolving_surface.hpp"
-#include "kernels/surface_builder.hpp"
-#include "kernels/vertex_order.hpp"
+#include "kernels/repair/surface_builder.hpp"
+#include "kernels/surface/vertex_order.hpp"
 #include "tests/support/analytic_surfaces.hpp"
 
 namespace semigeo::evolution {

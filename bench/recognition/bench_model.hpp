@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "kernels/nearest_surface.hpp"
-#include "kernels/surface_builder.hpp"
-#include "kernels/triangle_mesh.hpp"
+#include "kernels/repair/surface_builder.hpp"
+#include "kernels/surface/nearest_surface.hpp"
+#include "kernels/surface/triangle_mesh.hpp"
 
 namespace semigeo::recognition {
 

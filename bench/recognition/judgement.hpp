@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bench/recognition/bench_model.hpp"
-#include "kernels/similarity.hpp"
+#include "kernels/recognition/similarity.hpp"
 
 namespace semigeo::recognition {
 

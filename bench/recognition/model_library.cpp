@@ -8,7 +8,7 @@
 #include "io/triplet_run.hpp"
 #include "jobs/stages/library_job.hpp"
 #include "jobs/stages/partition_job.hpp"
-#include "kernels/triplet.hpp"
+#include "kernels/recognition/triplet.hpp"
 
 namespace semigeo::recognition {
 

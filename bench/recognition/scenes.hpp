@@ -8,8 +8,8 @@
 
 #include "bench/recognition/bench_model.hpp"
 #include "bench/support/chance.hpp"
-#include "kernels/similarity.hpp"
-#include "kernels/triangle_mesh.hpp"
+#include "kernels/recognition/similarity.hpp"
+#include "kernels/surface/triangle_mesh.hpp"
 
 namespace semigeo::recognition {
 

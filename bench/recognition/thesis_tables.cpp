@@ -11,8 +11,8 @@
 #include "bench/recognition/model_library.hpp"
 #include "bench/support/chance.hpp"
 #include "bench/support/mesh_changes.hpp"
-#include "kernels/features.hpp"
-#include "kernels/surface_builder.hpp"
+#include "kernels/features/features.hpp"
+#include "kernels/repair/surface_builder.hpp"
 
 namespace semigeo::recognition {
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "bench/support/chance.hpp"
-#include "kernels/triangle_mesh.hpp"
+#include "kernels/surface/triangle_mesh.hpp"
 
 namespace semigeo::recognition {
 

@@ -5,7 +5,7 @@
 
 #include "engine/observer.hpp"
 #include "engine/stopwatch.hpp"
-#include "kernels/surface_builder.hpp"
+#include "kernels/repair/surface_builder.hpp"
 
 namespace semigeo::recognition {
 namespace {

@@ -18,7 +18,7 @@
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "io/scan_reader.hpp"
-#include "kernels/surface_builder.hpp"
+#include "kernels/repair/surface_builder.hpp"
 
 namespace semigeo::repeatability {
 namespace {

@@ -6,9 +6,9 @@
 #include <optional>
 #include <span>
 
-#include "kernels/similarity.hpp"
-#include "kernels/surface.hpp"
-#include "kernels/triangle_mesh.hpp"
+#include "kernels/recognition/similarity.hpp"
+#include "kernels/surface/surface.hpp"
+#include "kernels/surface/triangle_mesh.hpp"
 
 namespace semigeo::repeatability {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bench/repeatability/repeats.hpp"
-#include "kernels/features.hpp"
+#include "kernels/features/features.hpp"
 
 namespace semigeo::repeatability {
 

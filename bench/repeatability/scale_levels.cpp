@@ -6,7 +6,7 @@
 
 #include "bench/support/chance.hpp"
 #include "jobs/stages/level_features.hpp"
-#include "kernels/vertex_order.hpp"
+#include "kernels/surface/vertex_order.hpp"
 
 namespace semigeo::repeatability {
 namespace {

@@ -8,9 +8,9 @@
 #include "bench/repeatability/mesh_changes.hpp"
 #include "engine/run_context.hpp"
 #include "jobs/stages/evolving_surface.hpp"
-#include "kernels/features.hpp"
-#include "kernels/similarity.hpp"
-#include "kernels/surface_builder.hpp"
+#include "kernels/features/features.hpp"
+#include "kernels/recognition/similarity.hpp"
+#include "kernels/repair/surface_builder.hpp"
 
 namespace semigeo::repeatability {
 

@@ -5,7 +5,7 @@
 #include <random>
 #include <string_view>
 
-#include "kernels/similarity.hpp"
+#include "kernels/recognition/similarity.hpp"
 
 namespace semigeo::bench {
 

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "kernels/triangle_mesh.hpp"
+#include "kernels/surface/triangle_mesh.hpp"
 
 namespace semigeo::bench {
 

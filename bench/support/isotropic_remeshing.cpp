@@ -10,7 +10,7 @@
 
 #include "bench/support/edit_mesh.hpp"
 #include "bench/support/mesh_changes.hpp"
-#include "kernels/nearest_surface.hpp"
+#include "kernels/surface/nearest_surface.hpp"
 
 namespace semigeo::bench {
 namespace {

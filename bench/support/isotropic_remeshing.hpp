@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "kernels/surface.hpp"
-#include "kernels/triangle_mesh.hpp"
+#include "kernels/surface/surface.hpp"
+#include "kernels/surface/triangle_mesh.hpp"
 
 namespace semigeo::bench {
 

@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 
 #include "bench/support/chance.hpp"
-#include "kernels/similarity.hpp"
-#include "kernels/surface.hpp"
-#include "kernels/triangle_mesh.hpp"
+#include "kernels/recognition/similarity.hpp"
+#include "kernels/surface/surface.hpp"
+#include "kernels/surface/triangle_mesh.hpp"
 
 namespace semigeo::bench {
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "kernels/triangle_mesh.hpp"
+#include "kernels/surface/triangle_mesh.hpp"
 
 namespace semigeo::bench {
 

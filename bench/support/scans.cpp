@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <utility>
 
-#include "kernels/surface_builder.hpp"
-#include "kernels/vertex_order.hpp"
+#include "kernels/repair/surface_builder.hpp"
+#include "kernels/surface/vertex_order.hpp"
 
 namespace semigeo::bench {
 

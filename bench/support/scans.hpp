@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "kernels/surface.hpp"
-#include "kernels/triangle_mesh.hpp"
+#include "kernels/surface/surface.hpp"
+#include "kernels/surface/triangle_mesh.hpp"
 
 namespace semigeo::bench {
 

@@ -9,7 +9,7 @@
 
 #include "engine/stopwatch.hpp"
 #include "jobs/stages/remesh_surface.hpp"
-#include "kernels/evolution.hpp"
+#include "kernels/evolution/evolution.hpp"
 
 namespace semigeo::jobs {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "engine/run_context.hpp"
 #include "jobs/stages/part_measures.hpp"
-#include "kernels/evolution.hpp"
-#include "kernels/remeshing.hpp"
-#include "kernels/surface.hpp"
+#include "kernels/evolution/evolution.hpp"
+#include "kernels/repair/remeshing.hpp"
+#include "kernels/surface/surface.hpp"
 
 namespace semigeo::jobs {
 

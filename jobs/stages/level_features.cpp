@@ -7,10 +7,10 @@
 #include <span>
 #include <utility>
 
-#include "kernels/extrema.hpp"
-#include "kernels/quadratic_face.hpp"
-#include "kernels/torsion.hpp"
-#include "kernels/zero_crossings.hpp"
+#include "kernels/features/extrema.hpp"
+#include "kernels/features/torsion.hpp"
+#include "kernels/features/zero_crossings.hpp"
+#include "kernels/surface/quadratic_face.hpp"
 
 namespace semigeo::jobs {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "engine/run_context.hpp"
 #include "jobs/stages/evolving_surface.hpp"
-#include "kernels/features.hpp"
+#include "kernels/features/features.hpp"
 
 namespace semigeo::jobs {
 

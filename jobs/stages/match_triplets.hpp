@@ -6,7 +6,7 @@
 
 #include "engine/run_context.hpp"
 #include "io/hash_library.hpp"
-#include "kernels/triplet.hpp"
+#include "kernels/recognition/triplet.hpp"
 
 namespace semigeo::jobs {
 

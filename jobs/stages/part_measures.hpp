@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/run_context.hpp"
-#include "kernels/remeshing.hpp"
+#include "kernels/repair/remeshing.hpp"
 
 namespace semigeo::jobs {
 

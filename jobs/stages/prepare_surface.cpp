@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "engine/stopwatch.hpp"
-#include "kernels/decimation.hpp"
+#include "kernels/repair/decimation.hpp"
 
 namespace semigeo::jobs {
 namespace {

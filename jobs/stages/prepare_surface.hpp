@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "engine/run_context.hpp"
-#include "kernels/hole_filling.hpp"
-#include "kernels/nearest_surface.hpp"
+#include "kernels/repair/hole_filling.hpp"
+#include "kernels/surface/nearest_surface.hpp"
 
 namespace semigeo::jobs {
 

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "jobs/stages/match_triplets.hpp"
-#include "kernels/feature_pair.hpp"
-#include "kernels/feature_triangle.hpp"
-#include "kernels/overlap.hpp"
-#include "kernels/pose_clusters.hpp"
+#include "kernels/recognition/feature_pair.hpp"
+#include "kernels/recognition/feature_triangle.hpp"
+#include "kernels/recognition/overlap.hpp"
+#include "kernels/recognition/pose_clusters.hpp"
 
 namespace semigeo::jobs {
 namespace {

@@ -7,7 +7,7 @@
 #include "engine/run_context.hpp"
 #include "io/hash_library.hpp"
 #include "jobs/stages/recognition_features.hpp"
-#include "kernels/similarity.hpp"
+#include "kernels/recognition/similarity.hpp"
 
 namespace semigeo::jobs {
 

@@ -7,8 +7,8 @@
 #include "jobs/config.hpp"
 #include "jobs/stages/evolving_surface.hpp"
 #include "jobs/stages/level_features.hpp"
-#include "kernels/surface_samples.hpp"
-#include "kernels/vertex_order.hpp"
+#include "kernels/recognition/surface_samples.hpp"
+#include "kernels/surface/vertex_order.hpp"
 
 namespace semigeo::jobs {
 namespace {

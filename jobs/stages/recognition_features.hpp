@@ -2,8 +2,8 @@
 
 #include "engine/run_context.hpp"
 #include "io/dataset.hpp"
-#include "kernels/recognition_model.hpp"
-#include "kernels/surface_builder.hpp"
+#include "kernels/recognition/recognition_model.hpp"
+#include "kernels/repair/surface_builder.hpp"
 
 namespace semigeo::jobs {
 

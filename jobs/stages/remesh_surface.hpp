@@ -5,7 +5,7 @@
 
 #include "engine/run_context.hpp"
 #include "jobs/stages/part_measures.hpp"
-#include "kernels/remeshing.hpp"
+#include "kernels/repair/remeshing.hpp"
 
 namespace semigeo::jobs {
 

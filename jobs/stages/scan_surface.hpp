@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "kernels/surface_builder.hpp"
+#include "kernels/repair/surface_builder.hpp"
 
 namespace semigeo::jobs {
 

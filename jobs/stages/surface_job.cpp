@@ -11,8 +11,8 @@
 #include "io/dataset_writer.hpp"
 #include "jobs/stages/evolving_surface.hpp"
 #include "jobs/stages/level_features.hpp"
-#include "kernels/scale_selection.hpp"
-#include "kernels/vertex_order.hpp"
+#include "kernels/features/scale_selection.hpp"
+#include "kernels/surface/vertex_order.hpp"
 
 namespace semigeo::jobs {
 namespace {

@@ -8,8 +8,8 @@
 #include "jobs/config.hpp"
 #include "jobs/stages/prepare_surface.hpp"
 #include "jobs/stages/scan_surface.hpp"
-#include "kernels/remeshing.hpp"
-#include "kernels/surface_builder.hpp"
+#include "kernels/repair/remeshing.hpp"
+#include "kernels/repair/surface_builder.hpp"
 
 namespace semigeo::jobs {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "kernels/feature_triangle.hpp"
-#include "kernels/features.hpp"
-#include "kernels/grown_clusters.hpp"
+#include "kernels/features/features.hpp"
+#include "kernels/recognition/feature_triangle.hpp"
+#include "kernels/recognition/thesis/grown_clusters.hpp"
 
 namespace semigeo::jobs {
 namespace {
@@ -106,7 +106,8 @@ std::vector<ThesisScore> ThesisDatabase::scores(const RecognitionModel& scene) c
   return result;
 }
 
-/// Source: thesis 4.6, 5.10. Differs: normals help to find the rotation (kernels/similarity.hpp).
+/// Source: thesis 4.6, 5.10. Differs: normals help to find the rotation
+/// (kernels/recognition/similarity.hpp).
 void ThesisDatabase::verify(std::size_t index, const RecognitionModel& scene,
                             const std::vector<Match>& matches, ThesisScore& score) const {
   const RecognitionModel& model = models_[index];

@@ -7,8 +7,8 @@
 #include "engine/run_context.hpp"
 #include "io/hash_library.hpp"
 #include "jobs/stages/recognise_scene.hpp"
-#include "kernels/pose_clusters.hpp"
-#include "kernels/thesis_hash.hpp"
+#include "kernels/recognition/pose_clusters.hpp"
+#include "kernels/recognition/thesis/thesis_hash.hpp"
 
 namespace semigeo::jobs {
 

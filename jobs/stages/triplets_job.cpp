@@ -2,7 +2,7 @@
 
 #include "io/dataset.hpp"
 #include "io/triplet_run.hpp"
-#include "kernels/triplet.hpp"
+#include "kernels/recognition/triplet.hpp"
 
 namespace semigeo::jobs {
 

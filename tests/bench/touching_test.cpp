@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "bench/support/mesh_changes.hpp"
-#include "kernels/nearest_surface.hpp"
-#include "kernels/surface_builder.hpp"
+#include "kernels/repair/surface_builder.hpp"
+#include "kernels/surface/nearest_surface.hpp"
 #include "tests/support/shapes.hpp"
 
 namespace semigeo::recognition {

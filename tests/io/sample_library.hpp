@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/recognition_model.hpp"
+#include "kernels/recognition/recognition_model.hpp"
 #include "tests/support/generated_models.hpp"
 
 namespace semigeo::tests {

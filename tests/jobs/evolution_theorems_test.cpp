@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/gaussian.hpp"
+#include "kernels/patch/gaussian.hpp"
 #include "tests/jobs/level_shape.hpp"
 #include "tests/support/analytic_surfaces.hpp"
 #include "tests/support/quantile.hpp"

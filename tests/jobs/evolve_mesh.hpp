@@ -5,8 +5,8 @@
 
 #include "jobs/stages/evolving_surface.hpp"
 #include "jobs/stages/level_features.hpp"
-#include "kernels/surface_builder.hpp"
-#include "kernels/vertex_order.hpp"
+#include "kernels/repair/surface_builder.hpp"
+#include "kernels/surface/vertex_order.hpp"
 
 namespace semigeo::jobs {
 

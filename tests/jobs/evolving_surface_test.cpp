@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "kernels/gaussian.hpp"
+#include "kernels/patch/gaussian.hpp"
 #include "tests/jobs/evolve_mesh.hpp"
 #include "tests/support/quantile.hpp"
 #include "tests/support/shapes.hpp"

@@ -8,7 +8,7 @@
 #include <functional>
 #include <numbers>
 
-#include "kernels/nearest_surface.hpp"
+#include "kernels/surface/nearest_surface.hpp"
 #include "tests/jobs/evolve_mesh.hpp"
 #include "tests/support/analytic_surfaces.hpp"
 #include "tests/support/shapes.hpp"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "kernels/surface_builder.hpp"
-#include "kernels/vertex_order.hpp"
+#include "kernels/repair/surface_builder.hpp"
+#include "kernels/surface/vertex_order.hpp"
 #include "tests/support/shapes.hpp"
 
 namespace semigeo::jobs {

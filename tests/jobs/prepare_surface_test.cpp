@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "kernels/surface_builder.hpp"
+#include "kernels/repair/surface_builder.hpp"
 #include "tests/support/shapes.hpp"
 
 namespace semigeo::jobs {

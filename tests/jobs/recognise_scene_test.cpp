@@ -7,7 +7,7 @@
 #include <optional>
 #include <random>
 
-#include "kernels/surface_builder.hpp"
+#include "kernels/repair/surface_builder.hpp"
 #include "tests/io/sample_library.hpp"
 #include "tests/support/random_similarity.hpp"
 #include "tests/support/shapes.hpp"

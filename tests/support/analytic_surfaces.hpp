@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/triangle_mesh.hpp"
+#include "kernels/surface/triangle_mesh.hpp"
 
 /// Surfaces whose curvature is known at every point, and triangulations of them that keep it.
 namespace semigeo::shapes {

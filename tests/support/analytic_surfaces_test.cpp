@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "kernels/surface_builder.hpp"
+#include "kernels/repair/surface_builder.hpp"
 
 namespace semigeo::shapes {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/features.hpp"
+#include "kernels/features/features.hpp"
 
 namespace semigeo::kernels {
 

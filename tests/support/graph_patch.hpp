@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/patch.hpp"
+#include "kernels/patch/patch.hpp"
 
 namespace semigeo::kernels {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <functional>
 
-#include "kernels/triangle_mesh.hpp"
+#include "kernels/surface/triangle_mesh.hpp"
 
 namespace semigeo::shapes {
 

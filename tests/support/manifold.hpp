@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "kernels/triangle_mesh.hpp"
+#include "kernels/surface/triangle_mesh.hpp"
 
 namespace semigeo::tests {
 

@@ -3,9 +3,9 @@
 #include <utility>
 #include <vector>
 
-#include "kernels/evolution.hpp"
-#include "kernels/surface_builder.hpp"
-#include "kernels/vertex_order.hpp"
+#include "kernels/evolution/evolution.hpp"
+#include "kernels/repair/surface_builder.hpp"
+#include "kernels/surface/vertex_order.hpp"
 
 namespace semigeo::kernels {
 

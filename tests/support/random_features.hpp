@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <random>
 
-#include "kernels/triplet.hpp"
+#include "kernels/recognition/triplet.hpp"
 #include "tests/support/random_similarity.hpp"
 
 namespace semigeo {

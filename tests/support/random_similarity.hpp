@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <random>
 
-#include "kernels/similarity.hpp"
+#include "kernels/recognition/similarity.hpp"
 
 namespace semigeo {
 

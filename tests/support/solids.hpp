@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/triangle_mesh.hpp"
+#include "kernels/surface/triangle_mesh.hpp"
 #include "tests/support/isosurface.hpp"
 
 /// Objects like those of the thesis' experiments (6.1): thick and thin where it matters, about

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <numbers>
 
-#include "kernels/surface_builder.hpp"
+#include "kernels/repair/surface_builder.hpp"
 #include "tests/support/manifold.hpp"
 #include "tests/support/triangle_intersections.hpp"
 

@@ -5,12 +5,13 @@
 #include <utility>
 #include <vector>
 
-#include "kernels/surface.hpp"
+#include "kernels/surface/surface.hpp"
 
 namespace semigeo::tests {
 
-/// The first promise of kernels/surface.hpp that the connectivity of a surface breaks, in words;
-/// empty if it is sound. Gaps that editing leaves (corners and `outgoing` kNone) are passed over.
+/// The first promise of kernels/surface/surface.hpp that the connectivity of a surface breaks, in
+/// words; empty if it is sound. Gaps that editing leaves (corners and `outgoing` kNone) are passed
+/// over.
 inline std::string fault_of(const kernels::Surface& s) {
   using namespace kernels;
   const auto name = [](std::int32_t h) { return "half-edge " + std::to_string(h); };

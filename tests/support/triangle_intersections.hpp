@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-#include "kernels/triangle_mesh.hpp"
+#include "kernels/surface/triangle_mesh.hpp"
 
 namespace semigeo::tests {
 

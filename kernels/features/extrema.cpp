@@ -1,0 +1,174 @@
+#include "kernels/features/extrema.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include "kernels/surface/nearest_surface.hpp"
+
+namespace semigeo::kernels {
+namespace {
+
+/// Calls test(w) for the neighbours of v until it returns true. result: whether it did.
+template <typename Test>
+bool any_neighbour(const Surface& surface, std::int32_t v, const Test& test) {
+  const std::int32_t start = surface.outgoing[v];
+  for (std::int32_t h = start;;) {
+    if (test(surface.target(h))) return true;
+    const std::int32_t following = surface.ccw(h);
+    if (following == kNone) return test(surface.origin(prev(h)));
+    if (following == start) return false;
+    h = following;
+  }
+}
+
+/// Whether two edges no longer than `radius` together lead to a comparable vertex that is higher.
+/// Along the surface it is not farther; most that are no maximum are found out here, at a tenth of
+/// the cost of a ball.
+bool outdone_two_edges_away(const Surface& surface, std::span<const Eigen::Vector4f> points,
+                            const CurvatureField& field, std::int32_t v, double radius) {
+  const auto length = [&](std::int32_t a, std::int32_t b) {
+    return (points[b] - points[a]).cast<double>().norm();
+  };
+  return any_neighbour(surface, v, [&](std::int32_t u) {
+    const double rest = radius - length(v, u);
+    return rest > 0 && any_neighbour(surface, u, [&](std::int32_t w) {
+             return w != v && field.comparable(v, w) && field.higher(w, v) && length(u, w) <= rest;
+           });
+  });
+}
+
+}  // namespace
+
+std::int32_t uphill(const Surface& surface, const CurvatureField& field, std::int32_t v) {
+  if (!field.comparable(v, v)) return kNone;
+  std::int32_t best = v;
+  any_neighbour(surface, v, [&](std::int32_t w) {
+    if (field.comparable(v, w) && field.higher(w, best)) best = w;
+    return false;
+  });
+  return best;
+}
+
+bool is_maximum(const Surface& surface, std::span<const Eigen::Vector4f> points,
+                const CurvatureField& field, std::int32_t v, double radius, GeodesicBall& ball) {
+  if (uphill(surface, field, v) != v) return false;
+  if (!(radius > 0)) return true;
+  if (outdone_two_edges_away(surface, points, field, v, radius)) return false;
+  bool highest = true;
+  ball.grow(surface, points, v, radius, [&](std::int32_t w, double) {
+    highest = w == v || !field.comparable(v, w) || field.higher(v, w);
+    return highest;
+  });
+  return highest;
+}
+
+Summit summit(const Surface& surface, std::span<const Eigen::Vector4f> points,
+              const CurvatureField& field, std::int32_t v) {
+  const auto point = [&](std::int32_t w) -> Eigen::Vector3d {
+    return points[w].head<3>().cast<double>();
+  };
+  float least = field.magnitude(v);
+  any_neighbour(surface, v, [&](std::int32_t w) {
+    if (field.comparable(v, w)) least = std::min(least, field.magnitude(w));
+    return false;
+  });
+  double weights = field.magnitude(v) - least;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // relative to v
+  any_neighbour(surface, v, [&](std::int32_t w) {
+    if (!field.comparable(v, w)) return false;
+    weights += field.magnitude(w) - least;
+    sum += static_cast<double>(field.magnitude(w) - least) * (point(w) - point(v));
+    return false;
+  });
+
+  Summit best{{v, v, v}, {1, 0, 0}};
+  if (!(weights > 0)) return best;
+  const Eigen::Vector3d centroid = point(v) + sum / weights;
+  double nearest2 = (centroid - point(v)).squaredNorm();
+  const std::int32_t start = surface.outgoing[v];
+  std::int32_t h = start;
+  do {
+    const std::int32_t a = surface.target(h);
+    const std::int32_t b = surface.origin(prev(h));
+    const Eigen::Vector3d on_face = nearest_on_triangle(centroid, point(v), point(a), point(b));
+    const Eigen::Vector3d normal = (point(a) - point(v)).cross(point(b) - point(v));
+    const double distance2 = (on_face - centroid).squaredNorm();
+    if (distance2 < nearest2 && normal.squaredNorm() > 0) {
+      nearest2 = distance2;
+      const auto share = [&](std::int32_t p, std::int32_t q) {
+        const double area = (point(p) - on_face).cross(point(q) - on_face).dot(normal);
+        return static_cast<float>(std::clamp(area / normal.squaredNorm(), 0.0, 1.0));
+      };
+      const float at_a = share(b, v);
+      const float at_b = std::min(share(v, a), 1 - at_a);
+      best = {{v, a, b}, {1 - at_a - at_b, at_a, at_b}};
+    }
+    h = surface.ccw(h);
+  } while (h != kNone && h != start);
+  return best;
+}
+
+std::vector<std::int32_t> peaks_of(std::vector<std::int32_t> uphill) {
+  for (std::size_t v = 0; v < uphill.size(); ++v) {
+    if (uphill[v] == kNone) continue;
+    std::int32_t peak = uphill[v];
+    while (uphill[peak] != peak) peak = uphill[peak];
+    // Everything on the way now points to the peak itself.
+    for (auto w = static_cast<std::int32_t>(v); uphill[w] != peak;) {
+      const std::int32_t next = uphill[w];
+      uphill[w] = peak;
+      w = next;
+    }
+  }
+  return uphill;
+}
+
+std::vector<float> prominences(const Surface& surface, const CurvatureField& field,
+                               std::span<const std::int32_t> peaks) {
+  // Passes: edges between the slopes of two peaks, as high as their lower end. Highest first, as
+  // one number each: the height, whose bits are in the order of positive floats, upside down, and
+  // the half-edge.
+  std::vector<std::uint64_t> passes;
+  for (std::int32_t f = 0; f < surface.face_count(); ++f)
+    for (int i = 0; i < 3; ++i) {
+      const std::int32_t h = halfedge(f, i);
+      if (surface.twin[h] > h) continue;  // seen from the other side
+      const std::int32_t v = surface.origin(h);
+      const std::int32_t w = surface.target(h);
+      if (peaks[v] == peaks[w] || !field.comparable(v, w)) continue;
+      const float height = std::min(field.magnitude(v), field.magnitude(w));
+      passes.push_back(std::uint64_t{~std::bit_cast<std::uint32_t>(height)} << 32 |
+                       static_cast<std::uint32_t>(h));
+    }
+  std::sort(passes.begin(), passes.end());
+
+  // The sea falls: at each pass the lower of two islands becomes part of the higher one.
+  std::vector<float> result(peaks.size(), 0.0f);
+  std::vector<std::int32_t> island(peaks.size());
+  std::iota(island.begin(), island.end(), 0);
+  const auto summit = [&](std::int32_t v) {
+    while (island[v] != v) {
+      island[v] = island[island[v]];
+      v = island[v];
+    }
+    return v;
+  };
+  for (std::size_t v = 0; v < peaks.size(); ++v)
+    if (peaks[v] == static_cast<std::int32_t>(v)) result[v] = field.magnitude(peaks[v]);
+  for (const std::uint64_t pass : passes) {
+    const auto h = static_cast<std::int32_t>(pass & 0xffffffff);
+    std::int32_t high = summit(peaks[surface.origin(h)]);
+    std::int32_t low = summit(peaks[surface.target(h)]);
+    if (high == low) continue;
+    const float height = std::bit_cast<float>(~static_cast<std::uint32_t>(pass >> 32));
+    if (field.higher(low, high)) std::swap(low, high);
+    result[low] = field.magnitude(low) - height;
+    island[low] = high;
+  }
+  return result;
+}
+
+}  // namespace semigeo::kernels

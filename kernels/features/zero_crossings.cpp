@@ -1,0 +1,138 @@
+#include "kernels/features/zero_crossings.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace semigeo::kernels {
+namespace {
+
+float value_at(const CurvatureField& field, std::int32_t v) {
+  return field.magnitude(v) > field.flat ? field.values[v] : 0.0f;
+}
+
+bool positive(const CurvatureField& field, std::int32_t v) {
+  return value_at(field, v) >= 0;
+}
+
+bool crossed(const Surface& surface, const CurvatureField& field, std::int32_t f) {
+  const auto& t = surface.triangles[f];
+  if (!field.counts(t[0]) || !field.counts(t[1]) || !field.counts(t[2])) return false;
+  const bool first = positive(field, t[0]);
+  return positive(field, t[1]) != first || positive(field, t[2]) != first;
+}
+
+/// A contour with positive values to its left enters a face over the half-edge that leads from
+/// positive to negative, and leaves it over the one that leads back.
+struct Passage {
+  std::int32_t entry = kNone;
+  std::int32_t exit = kNone;
+};
+
+Passage passage(const Surface& surface, const CurvatureField& field, std::int32_t f) {
+  Passage result;
+  for (int i = 0; i < 3; ++i) {
+    const std::int32_t h = halfedge(f, i);
+    const bool from = positive(field, surface.origin(h));
+    if (from == positive(field, surface.target(h))) continue;
+    (from ? result.entry : result.exit) = h;
+  }
+  return result;
+}
+
+class Tracer {
+ public:
+  Tracer(const Surface& surface, const CurvatureField& field, std::span<const std::int32_t> faces)
+      : surface_(surface), field_(field), faces_(faces), traced_(faces.size(), false) {
+    contours_.offsets.push_back(0);
+  }
+
+  Contours trace() {
+    for (const bool open : {true, false})
+      for (std::size_t k = 0; k < faces_.size(); ++k) {
+        if (traced_[k]) continue;
+        const std::int32_t entry = passage(surface_, field_, faces_[k]).entry;
+        if (!open || beyond(entry) == kNone) follow(entry);
+      }
+    return std::move(contours_);
+  }
+
+ private:
+  /// Position among the faces of the one across h, or kNone.
+  std::int32_t beyond(std::int32_t h) const {
+    const std::int32_t t = surface_.twin[h];
+    if (t == kNone) return kNone;
+    const auto at = std::ranges::lower_bound(faces_, face_of(t));
+    if (at == faces_.end() || *at != face_of(t)) return kNone;
+    return static_cast<std::int32_t>(at - faces_.begin());
+  }
+
+  void add(std::int32_t h) {
+    std::int32_t p = surface_.origin(h);
+    std::int32_t n = surface_.target(h);
+    if (!positive(field_, p)) std::swap(p, n);
+    const float a = value_at(field_, p);
+    const EdgePoint point{p, n, a / (a - field_.values[n])};
+    if (static_cast<std::int32_t>(contours_.points.size()) > contours_.offsets.back() &&
+        same(contours_.points.back(), point))
+      return;
+    contours_.points.push_back(point);
+  }
+
+  /// Both at the same vertex.
+  static bool same(const EdgePoint& a, const EdgePoint& b) {
+    return a.t == 0 && b.t == 0 && a.positive == b.positive;
+  }
+
+  void follow(std::int32_t entry) {
+    const std::int32_t first = entry;
+    bool closed = false;
+    add(entry);
+    while (true) {
+      const std::int32_t f = face_of(entry);
+      traced_[std::ranges::lower_bound(faces_, f) - faces_.begin()] = true;
+      const std::int32_t exit = passage(surface_, field_, f).exit;
+      if (beyond(exit) == kNone) {
+        add(exit);
+        break;
+      }
+      entry = surface_.twin[exit];
+      if (entry == first) {
+        closed = true;
+        break;
+      }
+      add(entry);
+    }
+    auto& points = contours_.points;
+    const std::int32_t begin = contours_.offsets.back();
+    if (closed && static_cast<std::int32_t>(points.size()) - begin > 1 &&
+        same(points[begin], points.back()))
+      points.pop_back();
+    if (static_cast<std::int32_t>(points.size()) - begin < 2) {
+      points.resize(begin);
+      return;
+    }
+    contours_.closed.push_back(closed ? 1 : 0);
+    contours_.offsets.push_back(static_cast<std::int32_t>(points.size()));
+  }
+
+  const Surface& surface_;
+  const CurvatureField& field_;
+  std::span<const std::int32_t> faces_;
+  std::vector<bool> traced_;
+  Contours contours_;
+};
+
+}  // namespace
+
+void find_crossing_faces(const Surface& surface, const CurvatureField& field, std::int32_t begin,
+                         std::int32_t end, std::vector<std::int32_t>& faces) {
+  for (std::int32_t f = begin; f < end; ++f)
+    if (crossed(surface, field, f)) faces.push_back(f);
+}
+
+Contours trace_contours(const Surface& surface, const CurvatureField& field,
+                        std::span<const std::int32_t> faces) {
+  return Tracer(surface, field, faces).trace();
+}
+
+}  // namespace semigeo::kernels

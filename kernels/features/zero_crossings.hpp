@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kernels/features/extrema.hpp"
+#include "kernels/surface/surface.hpp"
+
+namespace semigeo::kernels {
+
+/// A point of an edge: (1 - t) of one end and t of the other.
+struct EdgePoint {
+  std::int32_t positive = kNone;  ///< the end with a positive value, or zero
+  std::int32_t negative = kNone;
+  float t = 0;
+
+  template <typename Value>
+  Value between(const Value& at_positive, const Value& at_negative) const {
+    return at_positive + t * (at_negative - at_positive);
+  }
+};
+
+/// Lines along which a field is zero. Seen from outside, positive values lie to the left.
+struct Contours {
+  std::vector<EdgePoint> points;      ///< all contours, one after the other
+  std::vector<std::int32_t> offsets;  ///< (C + 1) first point of each
+  std::vector<std::uint8_t> closed;   ///< (C) 1: the last point joins the first
+
+  std::int64_t count() const { return static_cast<std::int64_t>(closed.size()); }
+};
+
+/// Appends those faces of [begin, end) through which a contour runs: all corners take part in the
+/// field, and their signs differ. What is smaller than `field.flat` is zero and counts as positive,
+/// so that a contour runs through a vertex that is exactly zero, and flat regions have none.
+void find_crossing_faces(const Surface& surface, const CurvatureField& field, std::int32_t begin,
+                         std::int32_t end, std::vector<std::int32_t>& faces);
+
+/// Joins the crossings of those faces to contours, open ones first, in the order of the faces.
+/// Each crossing is where linear interpolation along its edge gives zero; points that coincide
+/// are one. Contours end at boundaries and at faces that do not take part; those that shrink to a
+/// point are left out. `faces`: all of them, ascending. Linear cost.
+/// Source: thesis 5.7.
+Contours trace_contours(const Surface& surface, const CurvatureField& field,
+                        std::span<const std::int32_t> faces);
+
+}  // namespace semigeo::kernels

@@ -1,0 +1,314 @@
+#include "kernels/recognition/overlap.hpp"
+
+#include <Eigen/Dense>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <nanoflann.hpp>
+#include <numbers>
+#include <optional>
+
+#include "kernels/recognition/slippage.hpp"
+
+namespace semigeo::kernels {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+struct Cloud {
+  const std::vector<Vector3f>* points;
+  std::size_t kdtree_get_point_count() const { return points->size(); }
+  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return (*points)[i][static_cast<Eigen::Index>(axis)];
+  }
+  template <class Box>
+  bool kdtree_get_bbox(Box& /*box*/) const {
+    return false;
+  }
+};
+
+/// The one nearest point within a limit; of equally near ones the first.
+class NearestWithin {
+ public:
+  using DistanceType = float;
+  explicit NearestWithin(float squared_limit) : squared_(squared_limit) {}
+  std::int64_t index() const { return index_; }
+  bool addPoint(float squared, std::size_t index) {
+    const auto i = static_cast<std::int64_t>(index);
+    if (squared < squared_ || (squared == squared_ && i < index_)) {
+      squared_ = squared;
+      index_ = i;
+    }
+    return true;
+  }
+  float worstDist() const { return squared_; }
+  bool full() const { return true; }
+  std::size_t size() const { return index_ < 0 ? 0 : 1; }
+
+ private:
+  float squared_;
+  std::int64_t index_ = -1;
+};
+
+/// A similarity in single precision, for many points.
+struct FastPose {
+  Eigen::Matrix3f scaled;
+  Eigen::Matrix3f rotation;
+  Vector3f translation;
+  explicit FastPose(const Similarity& pose)
+      : scaled((pose.scale * pose.rotation).cast<float>()),
+        rotation(pose.rotation.cast<float>()),
+        translation(pose.translation.cast<float>()) {}
+  Vector3f point(const Vector3f& p) const { return scaled * p + translation; }
+};
+
+std::size_t bounded(std::int64_t count, const SurfaceSamples& samples) {
+  return std::min(static_cast<std::size_t>(count), samples.points.size());
+}
+
+/// Of the first n samples.
+Vector3d middle_of(const SurfaceSamples& samples, std::size_t n) {
+  Vector3d middle = Vector3d::Zero();
+  for (std::size_t i = 0; i < n; ++i)
+    middle += samples.points[i].cast<double>() / static_cast<double>(n);
+  return middle;
+}
+
+/// Whether q with normal n, the sample nearest to p, is the surface that p lies on. Samples stand
+/// for the surface round them: beside them it goes on.
+bool on_surface(const Vector3f& p, const Vector3f& q, const Vector3f& n, float tolerance,
+                float spacing) {
+  const Vector3f offset = p - q;
+  const float height = offset.dot(n);
+  if (std::abs(height) > tolerance) return false;
+  const float reach = tolerance + spacing;
+  return offset.squaredNorm() - height * height <= reach * reach;
+}
+
+/// A sample of a posed model and what of the scene it touches.
+struct Contact {
+  OrientedPoint posed;
+  std::int64_t near = -1;  ///< the nearest sample of the scene, -1: none within the limit
+  bool matches = false;    ///< both are one surface
+  float height = 0;        ///< over the scene's surface
+  float cosine = 0;        ///< between the normals
+};
+
+/// Samples of a model in one pose, against a scene.
+class PosedModel {
+ public:
+  PosedModel(const SurfaceSamples& model, double diagonal, const Similarity& pose,
+             const SampleTree& tree, const OverlapOptions& options)
+      : model_(model),
+        pose_(pose),
+        tree_(tree),
+        tolerance_(static_cast<float>(options.match * diagonal * pose.scale)),
+        min_cosine_(options.min_cosine) {}
+
+  float tolerance() const { return tolerance_; }
+
+  Contact contact(std::size_t i, float limit) const {
+    const SurfaceSamples& scene = tree_.samples();
+    Contact c;
+    c.posed = {pose_.point(model_.points[i]), pose_.rotation * model_.normals[i]};
+    c.near = tree_.nearest(c.posed.point, limit + scene.spacing);
+    if (c.near < 0) return c;
+    const Vector3f& q = scene.points[c.near];
+    const Vector3f& normal = scene.normals[c.near];
+    c.cosine = normal.dot(c.posed.normal);
+    c.height = (c.posed.point - q).dot(normal);
+    c.matches =
+        on_surface(c.posed.point, q, normal, tolerance_, scene.spacing) && c.cosine > min_cosine_;
+    return c;
+  }
+
+ private:
+  const SurfaceSamples& model_;
+  const FastPose pose_;
+  const SampleTree& tree_;
+  const float tolerance_;
+  const double min_cosine_;
+};
+
+Similarity turn_about(const Axis& axis, double angle) {
+  Similarity turn;
+  turn.rotation = Eigen::AngleAxisd(angle, axis.direction).toRotationMatrix();
+  turn.translation = axis.point - turn.rotation * axis.point;
+  return turn;
+}
+
+}  // namespace
+
+struct SampleTree::Tree {
+  using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>,
+                                                    Cloud, 3, std::uint32_t>;
+  Cloud cloud;
+  Index index;
+  explicit Tree(const SurfaceSamples& samples)
+      : cloud{&samples.points}, index(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(8)) {
+    if (!samples.points.empty()) index.buildIndex();
+  }
+};
+
+SampleTree::SampleTree(const SurfaceSamples& samples)
+    : samples_(&samples), tree_(std::make_unique<Tree>(samples)) {}
+SampleTree::~SampleTree() = default;
+SampleTree::SampleTree(SampleTree&&) noexcept = default;
+
+std::int64_t SampleTree::nearest(const Vector3f& p, float limit, std::int64_t guess) const {
+  if (samples_->points.empty()) return -1;
+  NearestWithin result(limit * limit);
+  if (guess >= 0) {
+    const Vector3f offset = p - samples_->points[guess];
+    // As the tree sums squares, so that what is equally near stays so.
+    const float squared =
+        offset.x() * offset.x() + offset.y() * offset.y() + offset.z() * offset.z();
+    result.addPoint(squared, static_cast<std::size_t>(guess));
+  }
+  tree_->index.findNeighbors(result, p.data(), nanoflann::SearchParams());
+  return result.index();
+}
+
+double Overlap::agreement() const {
+  if (match <= 0) return 0;
+  const double share = match / (match + conflict);
+  return match * closeness * share * share;
+}
+
+Overlap overlap(const SurfaceSamples& model, double diagonal, const Similarity& pose,
+                const SampleTree& tree, const OverlapOptions& options, std::int64_t count,
+                std::span<const std::uint8_t> used) {
+  const PosedModel posed(model, diagonal, pose, tree, options);
+  const auto limit = static_cast<float>(options.conflict * diagonal * pose.scale);
+  const std::vector<std::uint8_t>& rim = tree.samples().rim;
+  const std::size_t n = bounded(count, model);
+  std::int64_t matches = 0;
+  std::int64_t conflicts = 0;
+  double closeness = 0;
+  std::vector<OrientedPoint> matched;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Contact c = posed.contact(i, limit);
+    if (c.near < 0 || (!used.empty() && used[c.near] != 0)) continue;
+    if (c.matches) {
+      ++matches;
+      closeness += 1 - (c.height / posed.tolerance()) * (c.height / posed.tolerance());
+      if (options.stability) matched.push_back(c.posed);
+    } else if (rim.empty() || (rim[c.near] == 0 && !(c.cosine < 0 && c.height < 0))) {
+      ++conflicts;
+    }
+  }
+  if (matches == 0 && conflicts == 0) return {};
+  return {.match = static_cast<double>(matches) / static_cast<double>(n),
+          .conflict = static_cast<double>(conflicts) / static_cast<double>(n),
+          .closeness = matches == 0 ? 0 : closeness / static_cast<double>(matches),
+          .stability = Slippage(matched).stability()};
+}
+
+std::vector<Similarity> turned(const SurfaceSamples& model, double diagonal, const Similarity& pose,
+                               const SampleTree& tree, const OverlapOptions& options,
+                               std::int64_t count) {
+  constexpr int kTurns = 36;
+  constexpr double kFree = 0.02;  // a handle holds a cup by no more
+  std::vector<Similarity> result;
+  const std::size_t n = bounded(count, model);
+  if (n == 0) return result;
+  const Vector3d middle = middle_of(model, n);
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vector3d arm = model.points[i].cast<double>() - middle;
+    spread += arm * arm.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(spread);
+  for (int axis = 0; axis < 3; ++axis)
+    result.push_back(pose *
+                     turn_about({middle, principal.eigenvectors().col(axis)}, std::numbers::pi));
+
+  const PosedModel posed(model, diagonal, pose, tree, options);
+  std::vector<OrientedPoint> matched;
+  for (std::size_t i = 0; i < n; ++i)
+    if (const Contact c = posed.contact(i, posed.tolerance()); c.matches)
+      matched.push_back(c.posed);
+  if (const std::optional<Axis> axis = Slippage(matched).free_turn(kFree))
+    for (int k = 1; k < kTurns; ++k)
+      result.push_back(turn_about(*axis, 2 * std::numbers::pi * k / kTurns) * pose);
+  return result;
+}
+
+std::vector<std::uint8_t> explained(const SampleTree& model, double diagonal,
+                                    const Similarity& pose, const SurfaceSamples& scene,
+                                    const OverlapOptions& options, std::int64_t count,
+                                    std::span<const std::uint8_t> used) {
+  const FastPose back(pose.inverse());
+  const auto tolerance = static_cast<float>(options.match * diagonal);
+  const float spacing = model.samples().spacing;
+  std::vector<std::uint8_t> result(bounded(count, scene));
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    if (!used.empty() && used[i] != 0) continue;
+    const Vector3f p = back.point(scene.points[i]);
+    const std::int64_t near = model.nearest(p, tolerance + spacing);
+    if (near < 0) continue;
+    const Vector3f& normal = model.samples().normals[near];
+    result[i] = on_surface(p, model.samples().points[near], normal, tolerance, spacing) &&
+                        normal.dot(back.rotation * scene.normals[i]) > options.min_cosine
+                    ? 1
+                    : 0;
+  }
+  return result;
+}
+
+Similarity refined(const SurfaceSamples& model, double diagonal, const Similarity& start,
+                   const SampleTree& scene, const RefineOptions& options) {
+  using Matrix7d = Eigen::Matrix<double, 7, 7>;
+  constexpr int kFewest = 12;
+  const std::size_t n = bounded(options.count, model);
+  const Vector3d centre = middle_of(model, n);
+  Similarity pose = start;
+  std::vector<std::int64_t> nearest(n, -1);  // to each sample, before the last step
+  for (const double reach : options.reach)
+    for (int iteration = 0; iteration < options.iterations; ++iteration) {
+      const FastPose fast(pose);
+      const double size = diagonal * pose.scale;
+      const auto limit = static_cast<float>(reach * size);
+      const float spacing = scene.samples().spacing;
+      Matrix7d normal_matrix = Matrix7d::Zero();
+      Constraint right = Constraint::Zero();
+      // About the middle, in units of the model's size: all seven unknowns are of one magnitude.
+      const Vector3d middle = pose.apply(centre);
+      int matched = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        const Vector3f p = fast.point(model.points[i]);
+        const std::int64_t near = scene.nearest(p, limit + spacing, nearest[i]);
+        nearest[i] = near;
+        if (near < 0) continue;
+        const Vector3f& q = scene.samples().points[near];
+        const Vector3f& nq = scene.samples().normals[near];
+        if (!on_surface(p, q, nq, limit, spacing) ||
+            nq.dot(fast.rotation * model.normals[i]) < options.min_cosine)
+          continue;
+        const Vector3d normal = nq.cast<double>();
+        const Vector3d arm = (p.cast<double>() - middle) / size;
+        const Constraint row = plane_constraint(arm, normal);
+        normal_matrix.selfadjointView<Eigen::Lower>().rankUpdate(row);
+        right += row * normal.dot((q - p).cast<double>()) / size;
+        ++matched;
+      }
+      if (matched < kFewest) return pose;
+      // Directions that no plane holds stay as they are.
+      normal_matrix.diagonal().array() += 1e-4 * matched * reach;
+      const Constraint step =
+          Matrix7d(normal_matrix.selfadjointView<Eigen::Lower>()).ldlt().solve(right);
+      if (!step.allFinite()) return pose;
+      Similarity move;
+      const Vector3d turn = step.head<3>();
+      if (turn.norm() > 0)
+        move.rotation = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+      move.scale = std::exp(std::clamp(step[6], -0.2, 0.2));
+      move.translation = middle + size * step.segment<3>(3) - move.scale * (move.rotation * middle);
+      pose = move * pose;
+      if (step.norm() < 1e-5) break;
+    }
+  return pose;
+}
+
+}  // namespace semigeo::kernels

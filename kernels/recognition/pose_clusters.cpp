@@ -1,0 +1,112 @@
+#include "kernels/recognition/pose_clusters.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace semigeo::kernels {
+
+using Eigen::Quaternionf;
+using Eigen::Vector3d;
+
+PoseVotes::PoseVotes(std::span<const PoseVote> votes, const Vector3d& centre, double diagonal)
+    : centre_(centre), diagonal_(static_cast<float>(diagonal)) {
+  placements_.reserve(votes.size());
+  for (const PoseVote& vote : votes) placements_.push_back(placement(vote.pose, vote.weight));
+  std::ranges::stable_sort(placements_, {}, &Placement::log_scale);
+}
+
+std::vector<PoseCluster> PoseVotes::clusters(const ClusterOptions& options) const {
+  std::vector<std::pair<double, std::int32_t>> heavy;
+  for (const std::int32_t seed : seeds(options.seeds)) {
+    double weight = 0;
+    for_agreeing(placements_[seed], options.tolerance,
+                 [&](const Placement& p) { weight += p.weight; });
+    heavy.emplace_back(-weight, seed);
+  }
+  std::ranges::sort(heavy);
+  std::vector<PoseCluster> result;
+  std::vector<Placement> taken;
+  for (const auto& [weight, seed] : heavy) {
+    if (static_cast<int>(result.size()) >= options.most) break;
+    const Placement& p = placements_[seed];
+    if (std::ranges::any_of(taken,
+                            [&](const Placement& t) { return agree(t, p, options.tolerance); }))
+      continue;
+    taken.push_back(p);
+    result.push_back(cluster_about(p, options.tolerance));
+  }
+  return result;
+}
+
+double PoseVotes::support(const Similarity& pose, const PoseTolerance& tolerance) const {
+  double weight = 0;
+  for_agreeing(placement(pose, 0), tolerance, [&](const Placement& p) { weight += p.weight; });
+  return weight;
+}
+
+PoseVotes::Placement PoseVotes::placement(const Similarity& pose, double weight) const {
+  const Quaternionf rotation(Eigen::Matrix3f(pose.rotation.cast<float>()));
+  return {static_cast<float>(std::log(pose.scale)), pose.apply(centre_).cast<float>(),
+          rotation.coeffs(), static_cast<float>(weight)};
+}
+
+bool PoseVotes::agree(const Placement& a, const Placement& b,
+                      const PoseTolerance& tolerance) const {
+  if (std::abs(a.log_scale - b.log_scale) > tolerance.log_scale) return false;
+  const float reach = static_cast<float>(tolerance.distance) * diagonal_ * std::exp(a.log_scale);
+  if ((a.centre - b.centre).squaredNorm() > reach * reach) return false;
+  return std::abs(a.rotation.dot(b.rotation)) >= std::cos(tolerance.angle / 2);
+}
+
+template <typename Take>
+void PoseVotes::for_agreeing(const Placement& seed, const PoseTolerance& tolerance,
+                             const Take& take) const {
+  const auto width = static_cast<float>(tolerance.log_scale);
+  const float reach = static_cast<float>(tolerance.distance) * diagonal_ * std::exp(seed.log_scale);
+  const auto cosine = static_cast<float>(std::cos(tolerance.angle / 2));
+  auto p = std::ranges::lower_bound(placements_, seed.log_scale - width, {}, &Placement::log_scale);
+  for (; p != placements_.end() && p->log_scale <= seed.log_scale + width; ++p)
+    if ((p->centre - seed.centre).squaredNorm() <= reach * reach &&
+        std::abs(p->rotation.dot(seed.rotation)) >= cosine)
+      take(*p);
+}
+
+/// Half of them the heaviest votes, half evenly spread over the rest.
+std::vector<std::int32_t> PoseVotes::seeds(int most) const {
+  std::vector<std::int32_t> order(placements_.size());
+  std::iota(order.begin(), order.end(), 0);
+  if (order.size() <= static_cast<std::size_t>(most)) return order;
+  const std::ptrdiff_t half = most / 2;
+  std::ranges::stable_sort(order, std::ranges::greater(),
+                           [&](std::int32_t i) { return placements_[i].weight; });
+  std::vector<std::int32_t> chosen(order.begin(), order.begin() + half);
+  std::vector<std::int32_t> rest(order.begin() + half, order.end());
+  std::ranges::sort(rest);
+  const double step = static_cast<double>(rest.size()) / static_cast<double>(half);
+  for (std::ptrdiff_t i = 0; i < half; ++i)
+    chosen.push_back(rest[static_cast<std::size_t>((static_cast<double>(i) + 0.5) * step)]);
+  return chosen;
+}
+
+PoseCluster PoseVotes::cluster_about(const Placement& seed, const PoseTolerance& tolerance) const {
+  PoseCluster cluster;
+  double log_scale = 0;
+  Vector3d centre = Vector3d::Zero();
+  Eigen::Vector4d rotation = Eigen::Vector4d::Zero();
+  for_agreeing(seed, tolerance, [&](const Placement& p) {
+    cluster.weight += p.weight;
+    ++cluster.members;
+    log_scale += p.weight * p.log_scale;
+    centre += p.weight * p.centre.cast<double>();
+    rotation += std::copysign(p.weight, p.rotation.dot(seed.rotation)) * p.rotation.cast<double>();
+  });
+  Similarity& pose = cluster.pose;
+  pose.scale = std::exp(log_scale / cluster.weight);
+  pose.rotation = Eigen::Quaterniond(rotation.normalized()).toRotationMatrix();
+  pose.translation = centre / cluster.weight - pose.scale * (pose.rotation * centre_);
+  return cluster;
+}
+
+}  // namespace semigeo::kernels
