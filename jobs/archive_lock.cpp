@@ -11,8 +11,8 @@
 #include <optional>
 #include <system_error>
 
-#include "io/atomic_file.hpp"
-#include "io/file_descriptor.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/file_descriptor.hpp"
 #include "jobs/utc_time.hpp"
 
 namespace semigeo::jobs {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "io/error.hpp"
+#include "io/files/error.hpp"
 #include "jobs/process_identity.hpp"
 
 namespace semigeo::jobs {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/chunk_codec.hpp"
+#include "io/files/chunk_codec.hpp"
 #include "jobs/stages/evolving_surface.hpp"
 #include "jobs/stages/level_features.hpp"
 #include "jobs/stages/prepare_surface.hpp"

@@ -12,10 +12,10 @@
 #include <thread>
 #include <utility>
 
-#include "io/atomic_file.hpp"
-#include "io/dataset.hpp"
-#include "io/error.hpp"
-#include "io/file_digest.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/dataset/dataset.hpp"
+#include "io/files/error.hpp"
+#include "io/files/file_digest.hpp"
 
 namespace semigeo::jobs {
 namespace {

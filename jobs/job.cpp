@@ -2,12 +2,12 @@
 
 #include <cstdio>
 
-#include "io/dataset.hpp"
-#include "io/error.hpp"
-#include "io/hash_library.hpp"
-#include "io/posting_partition.hpp"
-#include "io/triplet_run.hpp"
-#include "io/xdmf.hpp"
+#include "io/dataset/dataset.hpp"
+#include "io/files/error.hpp"
+#include "io/library/hash_library.hpp"
+#include "io/library/posting_partition.hpp"
+#include "io/library/triplet_run.hpp"
+#include "io/dataset/xdmf.hpp"
 #include "jobs/stages/recognised_file.hpp"
 
 namespace semigeo::jobs {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/shape_range.hpp"
+#include "io/library/shape_range.hpp"
 
 namespace semigeo::jobs {
 

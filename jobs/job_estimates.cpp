@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "io/scan_reader.hpp"
+#include "io/scans/scan_reader.hpp"
 #include "jobs/scan_size.hpp"
 
 namespace semigeo::jobs {

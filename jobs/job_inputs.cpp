@@ -3,8 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include "io/dataset.hpp"
-#include "io/error.hpp"
+#include "io/dataset/dataset.hpp"
+#include "io/files/error.hpp"
 #include "jobs/job_key.hpp"
 
 namespace semigeo::jobs {

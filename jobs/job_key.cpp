@@ -1,6 +1,6 @@
 #include "jobs/job_key.hpp"
 
-#include "io/file_digest.hpp"
+#include "io/files/file_digest.hpp"
 
 namespace semigeo::jobs {
 namespace {

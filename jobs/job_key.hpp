@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "io/shape_range.hpp"
+#include "io/library/shape_range.hpp"
 #include "jobs/config.hpp"
 
 namespace semigeo::jobs {

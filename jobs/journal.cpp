@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "io/error.hpp"
-#include "io/file_digest.hpp"
-#include "io/input_file.hpp"
+#include "io/files/error.hpp"
+#include "io/files/file_digest.hpp"
+#include "io/files/input_file.hpp"
 #include "jobs/utc_time.hpp"
 
 namespace semigeo::jobs {

@@ -6,7 +6,7 @@
 #include <string>
 #include <variant>
 
-#include "io/file_descriptor.hpp"
+#include "io/files/file_descriptor.hpp"
 
 namespace semigeo::jobs {
 

@@ -5,9 +5,9 @@
 #include <set>
 #include <utility>
 
-#include "io/dataset.hpp"
-#include "io/error.hpp"
-#include "io/triplet_run.hpp"
+#include "io/dataset/dataset.hpp"
+#include "io/files/error.hpp"
+#include "io/library/triplet_run.hpp"
 #include "jobs/job_key.hpp"
 #include "jobs/stages/partition_job.hpp"
 #include "jobs/verification.hpp"

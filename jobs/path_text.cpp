@@ -4,7 +4,7 @@
 #include <cctype>
 #include <cstdio>
 
-#include "io/utf8.hpp"
+#include "io/files/utf8.hpp"
 
 namespace semigeo::jobs {
 

@@ -5,11 +5,11 @@
 #include <iterator>
 #include <utility>
 
-#include "io/dataset.hpp"
-#include "io/error.hpp"
-#include "io/file_digest.hpp"
-#include "io/utf8.hpp"
-#include "io/xdmf.hpp"
+#include "io/dataset/dataset.hpp"
+#include "io/files/error.hpp"
+#include "io/files/file_digest.hpp"
+#include "io/files/utf8.hpp"
+#include "io/dataset/xdmf.hpp"
 #include "jobs/job_key.hpp"
 #include "jobs/sources.hpp"
 #include "jobs/verification.hpp"

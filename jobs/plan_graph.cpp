@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "io/utf8.hpp"
+#include "io/files/utf8.hpp"
 
 namespace semigeo::jobs {
 namespace {

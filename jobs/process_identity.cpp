@@ -8,7 +8,7 @@
 #include <iterator>
 #include <sstream>
 
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 
 namespace semigeo::jobs {
 namespace {

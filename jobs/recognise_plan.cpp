@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "io/error.hpp"
-#include "io/hash_library.hpp"
-#include "io/utf8.hpp"
+#include "io/files/error.hpp"
+#include "io/library/hash_library.hpp"
+#include "io/files/utf8.hpp"
 #include "jobs/job_key.hpp"
 #include "jobs/library_plan.hpp"
 #include "jobs/sources.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "io/error.hpp"
+#include "io/files/error.hpp"
 #include "jobs/process_identity.hpp"
 #include "jobs/scan_size.hpp"
 #include "jobs/utc_time.hpp"

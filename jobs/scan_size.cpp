@@ -2,9 +2,9 @@
 
 #include <string_view>
 
-#include "io/byte_source.hpp"
-#include "io/error.hpp"
-#include "io/scan_reader.hpp"
+#include "io/files/byte_source.hpp"
+#include "io/files/error.hpp"
+#include "io/scans/scan_reader.hpp"
 
 namespace semigeo::jobs {
 namespace {

@@ -16,7 +16,7 @@
 #include <system_error>
 
 #include "engine/spawn.hpp"
-#include "io/error.hpp"
+#include "io/files/error.hpp"
 
 namespace semigeo::jobs {
 namespace {

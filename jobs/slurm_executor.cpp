@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "engine/child_process.hpp"
-#include "io/error.hpp"
+#include "io/files/error.hpp"
 #include "jobs/digest_cache.hpp"
 #include "jobs/drain.hpp"
 #include "jobs/job_inputs.hpp"

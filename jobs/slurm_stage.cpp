@@ -7,9 +7,9 @@
 #include <optional>
 #include <set>
 
-#include "io/atomic_file.hpp"
-#include "io/error.hpp"
-#include "io/xdmf.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/error.hpp"
+#include "io/dataset/xdmf.hpp"
 #include "jobs/job_estimates.hpp"
 #include "jobs/job_inputs.hpp"
 #include "jobs/task_list.hpp"

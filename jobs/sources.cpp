@@ -8,9 +8,9 @@
 #include <set>
 #include <string_view>
 
-#include "io/atomic_file.hpp"
-#include "io/error.hpp"
-#include "io/file_digest.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/error.hpp"
+#include "io/files/file_digest.hpp"
 #include "jobs/path_text.hpp"
 
 namespace semigeo::jobs {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 #include "jobs/task_list.hpp"
 
 namespace semigeo::jobs {

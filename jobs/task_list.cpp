@@ -7,7 +7,7 @@
 #include <numeric>
 #include <string_view>
 
-#include "io/error.hpp"
+#include "io/files/error.hpp"
 #include "jobs/path_text.hpp"
 
 namespace semigeo::jobs {

@@ -13,9 +13,9 @@
 #include <system_error>
 #include <thread>
 
-#include "io/dataset.hpp"
-#include "io/error.hpp"
-#include "io/hash_library.hpp"
+#include "io/dataset/dataset.hpp"
+#include "io/files/error.hpp"
+#include "io/library/hash_library.hpp"
 
 namespace semigeo::jobs {
 namespace {

@@ -19,9 +19,9 @@
 #include <vector>
 
 #include "engine/descriptor.hpp"
-#include "io/atomic_file.hpp"
-#include "io/error.hpp"
-#include "io/xdmf.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/error.hpp"
+#include "io/dataset/xdmf.hpp"
 #include "jobs/job_line.hpp"
 #include "jobs/job_stage.hpp"
 #include "jobs/process_usage.hpp"

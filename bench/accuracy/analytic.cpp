@@ -7,7 +7,7 @@
 
 #include "bench/accuracy/analytic_errors.hpp"
 #include "bench/accuracy/command.hpp"
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 
 namespace semigeo::accuracy {
 namespace {

@@ -12,9 +12,9 @@
 #include "bench/accuracy/command.hpp"
 #include "bench/accuracy/direction_errors.hpp"
 #include "bench/support/svg_plot.hpp"
-#include "io/atomic_file.hpp"
-#include "io/error.hpp"
-#include "io/scan_reader.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/error.hpp"
+#include "io/scans/scan_reader.hpp"
 #include "jobs/stages/evolving_surface.hpp"
 
 namespace semigeo::accuracy {

@@ -7,7 +7,7 @@
 #include "bench/support/memory.hpp"
 #include "bench/support/scans.hpp"
 #include "engine/stopwatch.hpp"
-#include "io/scan_reader.hpp"
+#include "io/scans/scan_reader.hpp"
 #include "tests/support/shapes.hpp"
 
 namespace semigeo::bench {

@@ -9,7 +9,7 @@
 
 #include "bench/support/memory.hpp"
 #include "engine/stopwatch.hpp"
-#include "io/triplet_run.hpp"
+#include "io/library/triplet_run.hpp"
 #include "jobs/stages/library_job.hpp"
 #include "jobs/stages/partition_job.hpp"
 #include "tests/support/generated_models.hpp"

@@ -7,8 +7,8 @@
 
 #include "bench/support/memory.hpp"
 #include "bench/support/scans.hpp"
-#include "io/file_digest.hpp"
-#include "io/mesh_writer.hpp"
+#include "io/files/file_digest.hpp"
+#include "io/scans/mesh_writer.hpp"
 #include "jobs/job_key.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -7,8 +7,8 @@
 
 #include "bench/support/mesh_changes.hpp"
 #include "bench/support/quadric_decimation.hpp"
-#include "io/error.hpp"
-#include "io/scan_reader.hpp"
+#include "io/files/error.hpp"
+#include "io/scans/scan_reader.hpp"
 
 namespace semigeo::recognition {
 namespace {

@@ -15,7 +15,7 @@
 #include "bench/recognition/scenes.hpp"
 #include "bench/recognition/thesis_tables.hpp"
 #include "bench/support/examples_first.hpp"
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 #include "jobs/stages/recognise_scene.hpp"
 #include "jobs/stages/thesis_recognition.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "io/triplet_run.hpp"
+#include "io/library/triplet_run.hpp"
 #include "jobs/stages/library_job.hpp"
 #include "jobs/stages/partition_job.hpp"
 #include "kernels/recognition/triplet.hpp"

@@ -7,7 +7,7 @@
 
 #include "bench/recognition/bench_model.hpp"
 #include "engine/run_context.hpp"
-#include "io/hash_library.hpp"
+#include "io/library/hash_library.hpp"
 #include "jobs/stages/recognition_features.hpp"
 
 namespace semigeo::recognition {

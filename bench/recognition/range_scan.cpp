@@ -1,6 +1,6 @@
 #include "bench/recognition/range_scan.hpp"
 
-#include "io/scan_reader.hpp"
+#include "io/scans/scan_reader.hpp"
 
 namespace semigeo::recognition {
 

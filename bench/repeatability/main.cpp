@@ -15,9 +15,9 @@
 #include "bench/repeatability/scale_levels.hpp"
 #include "bench/support/examples_first.hpp"
 #include "engine/stopwatch.hpp"
-#include "io/atomic_file.hpp"
-#include "io/error.hpp"
-#include "io/scan_reader.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/error.hpp"
+#include "io/scans/scan_reader.hpp"
 #include "kernels/repair/surface_builder.hpp"
 
 namespace semigeo::repeatability {

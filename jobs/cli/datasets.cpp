@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "io/error.hpp"
+#include "io/files/error.hpp"
 
 namespace semigeo::jobs::cli {
 

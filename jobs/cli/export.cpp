@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "io/dataset.hpp"
-#include "io/error.hpp"
-#include "io/feature_writer.hpp"
-#include "io/mesh_writer.hpp"
+#include "io/dataset/dataset.hpp"
+#include "io/files/error.hpp"
+#include "io/scans/feature_writer.hpp"
+#include "io/scans/mesh_writer.hpp"
 #include "jobs/cli/command.hpp"
 
 namespace semigeo::jobs::cli {

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "io/dataset.hpp"
-#include "io/error.hpp"
+#include "io/dataset/dataset.hpp"
+#include "io/files/error.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/datasets.hpp"
 #include "jobs/cli/json_output.hpp"

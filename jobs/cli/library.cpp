@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "io/error.hpp"
-#include "io/hash_library.hpp"
+#include "io/files/error.hpp"
+#include "io/library/hash_library.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/datasets.hpp"
 #include "jobs/cli/json_output.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/error.hpp"
+#include "io/files/error.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/recognise_report.hpp"
 #include "jobs/cli/run_plan.hpp"

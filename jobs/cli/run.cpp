@@ -2,8 +2,8 @@
 #include <memory>
 #include <string>
 
-#include "io/atomic_file.hpp"
-#include "io/error.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/error.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/run_options.hpp"
 #include "jobs/cli/run_plan.hpp"

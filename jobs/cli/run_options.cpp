@@ -8,7 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "io/utf8.hpp"
+#include "io/files/utf8.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {

@@ -9,8 +9,8 @@
 #include <set>
 #include <string>
 
-#include "io/atomic_file.hpp"
-#include "io/error.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/error.hpp"
 #include "jobs/archive_lock.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/run_report.hpp"

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <string>
 
-#include "io/error.hpp"
+#include "io/files/error.hpp"
 
 namespace semigeo::jobs::cli {
 

@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "engine/stopwatch.hpp"
-#include "io/error.hpp"
-#include "io/hash_library_format.hpp"
-#include "io/hash_library_writer.hpp"
-#include "io/posting_partition.hpp"
-#include "io/triplet_run.hpp"
+#include "io/files/error.hpp"
+#include "io/library/hash_library_format.hpp"
+#include "io/library/hash_library_writer.hpp"
+#include "io/library/posting_partition.hpp"
+#include "io/library/triplet_run.hpp"
 #include "jobs/stages/library_runs.hpp"
 
 namespace semigeo::jobs {

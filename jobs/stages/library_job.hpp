@@ -9,7 +9,7 @@
 
 namespace semigeo::jobs {
 
-/// Runs and partitions in, library.h5 out (io/hash_library.hpp).
+/// Runs and partitions in, library.h5 out (io/library/hash_library.hpp).
 struct LibraryJob {
   std::vector<std::filesystem::path> runs;        ///< as the partitions had them
   std::vector<std::filesystem::path> partitions;  ///< in the order of their shapes

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "io/error.hpp"
-#include "io/posting_partition.hpp"
+#include "io/files/error.hpp"
+#include "io/library/posting_partition.hpp"
 
 namespace semigeo::jobs {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/parallel.hpp"
-#include "io/triplet_run.hpp"
+#include "io/library/triplet_run.hpp"
 
 namespace semigeo::jobs {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/run_context.hpp"
-#include "io/hash_library.hpp"
+#include "io/library/hash_library.hpp"
 #include "kernels/recognition/triplet.hpp"
 
 namespace semigeo::jobs {

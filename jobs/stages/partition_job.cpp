@@ -9,10 +9,10 @@
 #include <numeric>
 #include <utility>
 
-#include "io/error.hpp"
-#include "io/hash_library_format.hpp"
-#include "io/posting_partition.hpp"
-#include "io/triplet_run.hpp"
+#include "io/files/error.hpp"
+#include "io/library/hash_library_format.hpp"
+#include "io/library/posting_partition.hpp"
+#include "io/library/triplet_run.hpp"
 #include "jobs/stages/library_runs.hpp"
 
 namespace semigeo::jobs {

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "engine/run_context.hpp"
-#include "io/shape_range.hpp"
+#include "io/library/shape_range.hpp"
 
 namespace semigeo::jobs {
 
-/// Runs of all models in, the postings of some shapes out (io/posting_partition.hpp).
+/// Runs of all models in, the postings of some shapes out (io/library/posting_partition.hpp).
 struct PartitionJob {
   std::vector<std::filesystem::path> runs;  ///< model i of the library is runs[i]: sorted by name
   io::ShapeRange shapes;

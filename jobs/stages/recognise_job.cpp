@@ -3,10 +3,10 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "io/dataset.hpp"
-#include "io/error.hpp"
-#include "io/file_digest.hpp"
-#include "io/scan_reader.hpp"
+#include "io/dataset/dataset.hpp"
+#include "io/files/error.hpp"
+#include "io/files/file_digest.hpp"
+#include "io/scans/scan_reader.hpp"
 #include "jobs/stages/recognised_file.hpp"
 #include "jobs/stages/scan_surface.hpp"
 #include "jobs/stages/thesis_recognition.hpp"

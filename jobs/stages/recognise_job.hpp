@@ -5,7 +5,7 @@
 #include <string>
 
 #include "engine/run_context.hpp"
-#include "io/hash_library.hpp"
+#include "io/library/hash_library.hpp"
 #include "jobs/config.hpp"
 
 namespace semigeo::jobs {

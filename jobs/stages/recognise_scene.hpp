@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/run_context.hpp"
-#include "io/hash_library.hpp"
+#include "io/library/hash_library.hpp"
 #include "jobs/stages/recognition_features.hpp"
 #include "kernels/recognition/similarity.hpp"
 

@@ -7,10 +7,10 @@
 #include <numbers>
 #include <span>
 
-#include "io/atomic_file.hpp"
-#include "io/error.hpp"
-#include "io/file_digest.hpp"
-#include "io/utf8.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/error.hpp"
+#include "io/files/file_digest.hpp"
+#include "io/files/utf8.hpp"
 
 namespace semigeo::jobs {
 namespace {

@@ -5,7 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "io/hash_library.hpp"
+#include "io/library/hash_library.hpp"
 #include "jobs/config.hpp"
 #include "jobs/stages/recognise_scene.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "engine/run_context.hpp"
-#include "io/dataset.hpp"
+#include "io/dataset/dataset.hpp"
 #include "kernels/recognition/recognition_model.hpp"
 #include "kernels/repair/surface_builder.hpp"
 

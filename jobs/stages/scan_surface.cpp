@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "io/error.hpp"
-#include "io/file_digest.hpp"
-#include "io/scan_reader.hpp"
+#include "io/files/error.hpp"
+#include "io/files/file_digest.hpp"
+#include "io/scans/scan_reader.hpp"
 
 namespace semigeo::jobs {
 namespace {

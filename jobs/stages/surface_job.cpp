@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/task_graph.hpp"
-#include "io/dataset_writer.hpp"
+#include "io/dataset/dataset_writer.hpp"
 #include "jobs/stages/evolving_surface.hpp"
 #include "jobs/stages/level_features.hpp"
 #include "kernels/features/scale_selection.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/run_context.hpp"
-#include "io/hash_library.hpp"
+#include "io/library/hash_library.hpp"
 #include "jobs/stages/recognise_scene.hpp"
 #include "kernels/recognition/pose_clusters.hpp"
 #include "kernels/recognition/thesis/thesis_hash.hpp"

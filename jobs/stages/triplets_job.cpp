@@ -1,7 +1,7 @@
 #include "jobs/stages/triplets_job.hpp"
 
-#include "io/dataset.hpp"
-#include "io/triplet_run.hpp"
+#include "io/dataset/dataset.hpp"
+#include "io/library/triplet_run.hpp"
 #include "kernels/recognition/triplet.hpp"
 
 namespace semigeo::jobs {

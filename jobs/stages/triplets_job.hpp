@@ -10,7 +10,7 @@
 
 namespace semigeo::jobs {
 
-/// Dataset in, run (io/triplet_run.hpp) out.
+/// Dataset in, run (io/library/triplet_run.hpp) out.
 struct TripletsJob {
   std::filesystem::path dataset;
   std::string name;  ///< of the model

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <set>
 
-#include "io/error.hpp"
+#include "io/files/error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace semigeo::jobs {

@@ -4,8 +4,8 @@
 
 #include <fstream>
 
-#include "io/error.hpp"
-#include "io/triplet_run.hpp"
+#include "io/files/error.hpp"
+#include "io/library/triplet_run.hpp"
 #include "jobs/job_key.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "io/utf8.hpp"
+#include "io/files/utf8.hpp"
 
 #include "tests/jobs/unusual_parameters.hpp"
 

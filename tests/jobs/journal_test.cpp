@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "io/error.hpp"
-#include "io/file_digest.hpp"
+#include "io/files/error.hpp"
+#include "io/files/file_digest.hpp"
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -6,12 +6,12 @@
 #include <functional>
 #include <iterator>
 
-#include "io/error.hpp"
-#include "io/hash_library.hpp"
-#include "io/posting_partition.hpp"
-#include "io/triplet_run.hpp"
+#include "io/files/error.hpp"
+#include "io/library/hash_library.hpp"
+#include "io/library/posting_partition.hpp"
+#include "io/library/triplet_run.hpp"
 #include "jobs/stages/partition_job.hpp"
-#include "tests/io/sample_library.hpp"
+#include "tests/io/library/sample_library.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace semigeo::jobs {

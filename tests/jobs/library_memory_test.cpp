@@ -33,7 +33,7 @@ void* counted(void* memory) {
 
 #include <gtest/gtest.h>
 
-#include "io/triplet_run.hpp"
+#include "io/library/triplet_run.hpp"
 #include "jobs/stages/library_job.hpp"
 #include "jobs/stages/partition_job.hpp"
 #include "tests/support/generated_models.hpp"

@@ -10,8 +10,8 @@
 #include <functional>
 #include <iterator>
 
-#include "io/dataset.hpp"
-#include "io/error.hpp"
+#include "io/dataset/dataset.hpp"
+#include "io/files/error.hpp"
 #include "jobs/scan_size.hpp"
 #include "tests/support/scan_file.hpp"
 #include "tests/support/shapes.hpp"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "io/utf8.hpp"
+#include "io/files/utf8.hpp"
 
 namespace semigeo::jobs {
 namespace {

@@ -10,10 +10,10 @@
 #include <set>
 
 #include "engine/run_context.hpp"
-#include "io/dataset.hpp"
-#include "io/error.hpp"
-#include "io/file_digest.hpp"
-#include "io/xdmf.hpp"
+#include "io/dataset/dataset.hpp"
+#include "io/files/error.hpp"
+#include "io/files/file_digest.hpp"
+#include "io/dataset/xdmf.hpp"
 #include "jobs/job_key.hpp"
 #include "jobs/job_stage.hpp"
 #include "tests/support/scan_file.hpp"

@@ -6,8 +6,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "io/error.hpp"
-#include "io/file_digest.hpp"
+#include "io/files/error.hpp"
+#include "io/files/file_digest.hpp"
 #include "jobs/stages/library_job.hpp"
 #include "jobs/stages/partition_job.hpp"
 #include "jobs/stages/recognised_file.hpp"

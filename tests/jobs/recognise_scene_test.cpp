@@ -8,7 +8,7 @@
 #include <random>
 
 #include "kernels/repair/surface_builder.hpp"
-#include "tests/io/sample_library.hpp"
+#include "tests/io/library/sample_library.hpp"
 #include "tests/support/random_similarity.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "io/error.hpp"
+#include "io/files/error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace semigeo::jobs {

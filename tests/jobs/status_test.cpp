@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "io/error.hpp"
+#include "io/files/error.hpp"
 #include "jobs/utc_time.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -11,10 +11,10 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "io/dataset.hpp"
-#include "io/error.hpp"
-#include "io/file_digest.hpp"
-#include "io/xdmf.hpp"
+#include "io/dataset/dataset.hpp"
+#include "io/files/error.hpp"
+#include "io/files/file_digest.hpp"
+#include "io/dataset/xdmf.hpp"
 #include "jobs/job_key.hpp"
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/scan_file.hpp"

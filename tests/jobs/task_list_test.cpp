@@ -5,7 +5,7 @@
 #include <fstream>
 #include <numeric>
 
-#include "io/error.hpp"
+#include "io/files/error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace semigeo::jobs {

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <random>
 
-#include "tests/io/sample_library.hpp"
+#include "tests/io/library/sample_library.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace semigeo::jobs {

@@ -5,10 +5,10 @@
 #include <fstream>
 #include <iterator>
 
-#include "io/dataset.hpp"
-#include "io/error.hpp"
-#include "io/file_digest.hpp"
-#include "io/triplet_run.hpp"
+#include "io/dataset/dataset.hpp"
+#include "io/files/error.hpp"
+#include "io/files/file_digest.hpp"
+#include "io/library/triplet_run.hpp"
 #include "jobs/stages/surface_job.hpp"
 #include "tests/support/scan_file.hpp"
 #include "tests/support/shapes.hpp"

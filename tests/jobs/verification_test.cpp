@@ -7,8 +7,8 @@
 #include <iterator>
 
 #include "engine/run_context.hpp"
-#include "io/file_digest.hpp"
-#include "io/hdf5.hpp"
+#include "io/files/file_digest.hpp"
+#include "io/hdf5/hdf5.hpp"
 #include "jobs/stages/surface_job.hpp"
 #include "tests/support/scan_file.hpp"
 #include "tests/support/shapes.hpp"

@@ -10,7 +10,7 @@
 
 #include "engine/child_process.hpp"
 #include "engine/descriptor.hpp"
-#include "io/dataset.hpp"
+#include "io/dataset/dataset.hpp"
 #include "jobs/job_line.hpp"
 #include "jobs/plan.hpp"
 #include "tests/support/scan_file.hpp"

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/hdf5/content_digest.hpp"
+#include "kernels/features/features.hpp"
+
+namespace semigeo::io {
+
+// Features and contours of a level in its tables `features`, `contours` and `contour_points`;
+// io/DATASET.md is their description.
+
+using kernels::kContourKinds;
+using kernels::torsion_of;
+
+/// How many there are of each kind; attributes of the level, as the tables hold all kinds.
+struct FeatureCounts {
+  std::array<std::int64_t, kernels::kFeatureKinds> of_kind = {};
+  std::array<std::int64_t, kContourKinds> contours = {};
+  std::array<double, kContourKinds> contour_length = {};
+
+  std::int64_t total() const;
+};
+
+/// A row of `features`, as it is stored.
+struct FeatureRow {
+  std::int64_t vertex;
+  float value;
+  float prominence;
+  std::array<float, 3> position;
+  std::array<float, 3> initial_position;
+  std::array<float, 3> normal;
+  float scale_free_gaussian;
+  float scale_free_mean;
+  std::int32_t kind;           ///< kernels::FeatureKind; ascending
+  std::int64_t contour_point;  ///< of torsion: the row of `contour_points` that it is; else -1
+};
+
+/// A row of `contours`.
+struct ContourRow {
+  std::int64_t first;   ///< row of `contour_points`
+  std::int64_t count;   ///< of its points
+  std::int32_t kind;    ///< 0: K = 0, 1: H = 0; ascending
+  std::int32_t closed;  ///< 1: the last point joins the first
+};
+
+/// A point of a contour, relative to the header's origin, and its torsion, in length^-1.
+using ContourPointRow = std::array<float, 4>;
+
+/// kernels::LevelFeatures as a dataset stores them.
+struct FeatureTables {
+  std::vector<FeatureRow> features;
+  std::vector<ContourRow> contours;
+  std::vector<ContourPointRow> contour_points;
+  FeatureCounts counts;
+};
+
+FeatureTables tables_of(const kernels::LevelFeatures& features);
+
+struct EncodedFeatures {
+  EncodedArray features;        ///< ElementType::feature
+  EncodedArray contours;        ///< ElementType::contour
+  EncodedArray contour_points;  ///< float32 (M, 4)
+  FeatureCounts counts;
+};
+
+ArrayView array_of(std::span<const FeatureRow> rows);
+ArrayView array_of(std::span<const ContourRow> rows);
+ArrayView array_of(std::span<const ContourPointRow> rows);
+
+/// Calls add(view, target) for every table, so that the caller may encode them as he likes.
+/// Both arguments must live as long as the views are used.
+template <typename Add>
+void for_each_array(const FeatureTables& tables, EncodedFeatures& encoded, Add&& add) {
+  encoded.counts = tables.counts;
+  add(array_of(tables.features), encoded.features);
+  add(array_of(tables.contours), encoded.contours);
+  add(array_of(tables.contour_points), encoded.contour_points);
+}
+
+/// Every table, one after the other.
+EncodedFeatures encode_features(const FeatureTables& tables, Compression compression);
+
+/// Writes the tables and counts of `level`, a path. std::invalid_argument when they do not fit
+/// each other.
+void write_features(DigestedFile& file, const std::string& level, const EncodedFeatures& features);
+
+/// Reads attributes and shapes; Error if a table is missing or does not fit the counts.
+FeatureCounts check_features(const Hdf5File& file, const std::string& level);
+
+/// The features of a level, which has so many vertices, by kind. Error if the tables do not fit the
+/// counts, or one is at a vertex that the level does not have, or among those of another kind.
+kernels::FeaturesByKind read_features(const Hdf5File& file, const std::string& level,
+                                      std::int64_t vertices);
+
+/// The contours K = 0 (gaussian) or H = 0 (mean) of a level that passed check_features. Error if
+/// contours are not one after the other, from the first point to the last, or a maximum is at a
+/// point of another kind; std::invalid_argument for the other kinds.
+kernels::SampledContours read_contours(const Hdf5File& file, const std::string& level,
+                                       kernels::FeatureKind kind);
+
+}  // namespace semigeo::io

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "io/files/input_file.hpp"
+#include "io/files/output_file.hpp"
+
+namespace semigeo::io {
+
+/// A kind of binary file of ours (io/LIBRARY.md): magic and version, data, a head that tells what
+/// the data is, and a trailer that finds the head and has its checksum. Little endian.
+struct BinaryFormat {
+  std::string_view magic;  ///< 8 characters
+  std::uint32_t version;   ///< the one that this program reads
+  const char* noun;        ///< as messages have it: "a run of triplets"
+};
+
+/// Numbers and texts one after the other.
+class HeadWriter {
+ public:
+  template <typename Number>
+  void number(Number value) {
+    static_assert(std::is_arithmetic_v<Number>);
+    numbers(std::span<const Number>(&value, 1));
+  }
+  template <typename Number>
+  void numbers(std::span<const Number> values) {
+    bytes_.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+  }
+  /// Its length first.
+  void text(std::string_view text) {
+    number(static_cast<std::uint32_t>(text.size()));
+    bytes_.append(text);
+  }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+class BinaryWriter {
+ public:
+  BinaryWriter(const std::filesystem::path& path, const BinaryFormat& format);
+  void data(std::span<const std::byte> bytes);
+  /// Ends the file, which then appears under its name.
+  void finish(const HeadWriter& head);
+  /// As AtomicFile::commit_unsynced.
+  void finish_unsynced(const HeadWriter& head);
+
+ private:
+  void write_end(const HeadWriter& head);
+
+  OutputFile file_;
+};
+
+/// Opening checks all but the data. Every failure is an Error. `read` may be called by several
+/// threads at once.
+class BinaryFile {
+ public:
+  BinaryFile(const std::filesystem::path& path, const BinaryFormat& format);
+
+  const std::filesystem::path& path() const { return file_.path(); }
+  std::uint64_t head_hash() const { return head_hash_; }
+  std::uint64_t data_bytes() const { return data_bytes_; }
+
+  // The head, from its beginning to its end; Error if it ends too early.
+  template <typename Number>
+  Number number() {
+    Number value;
+    take(&value, sizeof value);
+    return value;
+  }
+  template <typename Number>
+  void numbers(std::span<Number> values) {
+    take(values.data(), values.size_bytes());
+  }
+  /// As many as are said; Error before anything is allocated if the head has fewer.
+  template <typename Number>
+  std::vector<Number> numbers(std::uint64_t count) {
+    if (count > (head_.size() - taken_) / sizeof(Number)) refuse("head", "ends too early");
+    std::vector<Number> values(count);
+    numbers(std::span<Number>(values));
+    return values;
+  }
+  std::string text();
+  /// Error if there is more of it; forgets it.
+  void end_of_head();
+
+  /// A piece of the data, whose first byte is 0. Nothing checks what it says.
+  std::vector<std::byte> read(std::uint64_t offset, std::uint64_t bytes) const;
+
+  [[noreturn]] void refuse(const std::string& place, const std::string& problem) const;
+
+ private:
+  void take(void* to, std::size_t bytes);
+
+  InputFile file_;
+  std::string head_;
+  std::size_t taken_ = 0;
+  std::uint64_t head_hash_ = 0;
+  std::uint64_t data_bytes_ = 0;
+};
+
+}  // namespace semigeo::io

@@ -1,0 +1,71 @@
+#include "io/files/byte_source.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "io/files/error.hpp"
+#include "io/files/gzip_stream.hpp"
+
+namespace semigeo::io {
+
+ByteSource::ByteSource(const std::filesystem::path& path)
+    : file_(path), window_(std::make_unique_for_overwrite<char[]>(kWindowBytes)) {
+  cursor_ = end_ = window_.get();
+  std::string start(GzipStream::kMagic.size(), '\0');
+  start.resize(file_.read(start));
+  if (start == GzipStream::kMagic) {
+    gzip_ = std::make_unique<GzipStream>(file_, start);
+  } else {
+    std::copy(start.begin(), start.end(), window_.get());
+    end_ = cursor_ + start.size();
+  }
+}
+
+ByteSource::~ByteSource() = default;
+
+std::string ByteSource::place(std::int64_t byte) const {
+  return "byte " + std::to_string(byte) + (compressed() ? " after decompression" : "");
+}
+
+std::size_t ByteSource::read(char* to, std::size_t bytes) {
+  return gzip_ ? gzip_->read({to, bytes}) : file_.read({to, bytes});
+}
+
+bool ByteSource::refill(std::size_t bytes) {
+  auto kept = static_cast<std::size_t>(end_ - cursor_);
+  window_position_ += cursor_ - window_.get();
+  std::memmove(window_.get(), cursor_, kept);
+  cursor_ = window_.get();
+  while (kept < bytes && !ended_) {
+    const std::size_t got = read(window_.get() + kept, kWindowBytes - kept);
+    ended_ = got == 0;
+    kept += got;
+  }
+  end_ = cursor_ + kept;
+  return kept >= bytes;
+}
+
+std::int64_t ByteSource::skip(std::int64_t bytes) {
+  std::int64_t done = 0;
+  while (done < bytes && fill(1)) {
+    const auto step = std::min<std::int64_t>(bytes - done, end_ - cursor_);
+    cursor_ += step;
+    done += step;
+  }
+  return done;
+}
+
+std::optional<std::int64_t> ByteSource::bytes_left() const {
+  if (compressed()) return std::nullopt;
+  return std::max<std::int64_t>(file_.size() - position(), 0);
+}
+
+std::int64_t ByteSource::drain() {
+  constexpr std::string_view kEmpty("\0 \t\r\n\x1a", 6);  // 1a: the end of a text under DOS
+  std::int64_t found = 0;
+  for (; fill(1); cursor_ = end_)
+    found += std::count_if(cursor_, end_, [&](char c) { return kEmpty.find(c) == kEmpty.npos; });
+  return found;
+}
+
+}  // namespace semigeo::io

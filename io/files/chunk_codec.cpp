@@ -1,0 +1,320 @@
+#include "io/files/chunk_codec.hpp"
+
+#include <libdeflate.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+
+namespace semigeo::io {
+namespace {
+
+static_assert(std::endian::native == std::endian::little,
+              "stored arrays are little endian and chunks are written as they lie in memory");
+
+constexpr std::int64_t kChunkBytes = 256 * 1024;
+constexpr int kFastest = 1;
+constexpr std::size_t kChecksumBytes = 4;
+
+// Positions in the pipeline of Compression::deflate, as bits of the filter mask.
+constexpr std::uint32_t kSkipShuffle = 1U << 0;
+constexpr std::uint32_t kSkipDeflate = 1U << 1;
+
+struct FreeCompressor {
+  void operator()(libdeflate_compressor* c) const { libdeflate_free_compressor(c); }
+};
+struct FreeDecompressor {
+  void operator()(libdeflate_decompressor* d) const { libdeflate_free_decompressor(d); }
+};
+
+template <typename Memory, typename Stored>
+void convert_rows(const ArrayView& view, std::int64_t first, std::int64_t count, std::byte* out) {
+  for (std::int64_t i = first; i < first + count; ++i) {
+    const std::int64_t row = view.row_order.empty() ? i : view.row_order[i];
+    const std::byte* in = view.data + row * view.row_stride;
+    for (int c = 0; c < view.columns; ++c) {
+      Memory value;
+      std::memcpy(&value, in + c * sizeof(Memory), sizeof(Memory));
+      const auto stored = static_cast<Stored>(value);
+      std::memcpy(out, &stored, sizeof(Stored));
+      out += sizeof(Stored);
+    }
+  }
+}
+
+void gather_records(const ArrayView& view, std::int64_t first, std::int64_t count, std::byte* out) {
+  const auto size = static_cast<std::size_t>(size_of(view.memory_type));
+  for (std::int64_t i = first; i < first + count; ++i, out += size) {
+    const std::int64_t row = view.row_order.empty() ? i : view.row_order[i];
+    std::memcpy(out, view.data + row * view.row_stride, size);
+  }
+}
+
+void gather_rows(const ArrayView& view, std::int64_t first, std::int64_t count, std::byte* out) {
+  using enum ElementType;
+  if (view.memory_type == view.stored_type) {
+    const std::int64_t row_bytes = view.columns * size_of(view.memory_type);
+    if (view.row_order.empty() && view.row_stride == row_bytes) {
+      std::memcpy(out, view.data + first * row_bytes, static_cast<std::size_t>(count * row_bytes));
+    } else if (!members_of(view.memory_type).empty()) {
+      gather_records(view, first, count, out);
+    } else if (size_of(view.memory_type) == 4) {
+      convert_rows<std::uint32_t, std::uint32_t>(view, first, count, out);
+    } else if (size_of(view.memory_type) == 8) {
+      convert_rows<std::uint64_t, std::uint64_t>(view, first, count, out);
+    } else if (size_of(view.memory_type) == 2) {
+      convert_rows<std::uint16_t, std::uint16_t>(view, first, count, out);
+    } else {
+      convert_rows<std::uint8_t, std::uint8_t>(view, first, count, out);
+    }
+  } else if (view.memory_type == int32 && view.stored_type == int64) {
+    convert_rows<std::int32_t, std::int64_t>(view, first, count, out);
+  } else if (view.memory_type == float64 && view.stored_type == float32) {
+    convert_rows<double, float>(view, first, count, out);
+  } else {
+    throw std::invalid_argument("no conversion from " + std::string(name_of(view.memory_type)) +
+                                " to " + std::string(name_of(view.stored_type)));
+  }
+}
+
+// Calls `action` with the size of an element, as a constant where that makes the loops fast.
+template <typename Action>
+void with_known_size(std::size_t size, const Action& action) {
+  switch (size) {
+    case 1:
+      return action(std::integral_constant<std::size_t, 1>());
+    case 4:
+      return action(std::integral_constant<std::size_t, 4>());
+    case 8:
+      return action(std::integral_constant<std::size_t, 8>());
+    default:
+      return action(size);
+  }
+}
+
+void shuffle(std::span<const std::byte> in, std::size_t element_size, std::byte* out) {
+  const auto planes = [&](auto size) {
+    const std::size_t elements = in.size() / size;
+    for (std::size_t i = 0; i < elements; ++i)
+      for (std::size_t b = 0; b < size; ++b) out[b * elements + i] = in[i * size + b];
+  };
+  with_known_size(element_size, planes);
+}
+
+void unshuffle(std::span<const std::byte> in, std::size_t element_size, std::byte* out) {
+  const auto rows = [&](auto size) {
+    const std::size_t elements = in.size() / size;
+    for (std::size_t i = 0; i < elements; ++i)
+      for (std::size_t b = 0; b < size; ++b) out[i * size + b] = in[b * elements + i];
+  };
+  with_known_size(element_size, rows);
+}
+
+// Appends what HDF5's fletcher32 filter appends: the checksum, least significant byte first.
+std::vector<std::byte> with_checksum(std::span<const std::byte> bytes) {
+  std::vector<std::byte> result(bytes.size() + kChecksumBytes);
+  std::memcpy(result.data(), bytes.data(), bytes.size());
+  const std::uint32_t sum = fletcher32(bytes);
+  std::memcpy(result.data() + bytes.size(), &sum, kChecksumBytes);
+  return result;
+}
+
+using Compressor = std::unique_ptr<libdeflate_compressor, FreeCompressor>;
+
+// The low bytes of floating-point coordinates are noise, and shuffling puts them in front, one
+// plane after the other. Returns how many bytes of such planes there are, by packing a sample.
+std::size_t noise_in_front(libdeflate_compressor* compressor, std::span<const std::byte> shuffled,
+                           std::size_t element_size) {
+  constexpr std::size_t kSample = 4096;
+  const std::size_t plane = shuffled.size() / element_size;
+  if (plane < 2 * kSample) return 0;
+  std::array<std::byte, kSample> packed;
+  std::size_t noise = 0;
+  while (noise + plane < shuffled.size() &&
+         libdeflate_deflate_compress(compressor, shuffled.data() + noise + (plane - kSample) / 2,
+                                     kSample, packed.data(), kSample - kSample / 64) == 0)
+    noise += plane;
+  return noise;
+}
+
+// Stored blocks of a deflate stream (RFC 1951, 3.2.4), none of them the last.
+std::byte* put_stored_blocks(std::span<const std::byte> bytes, std::byte* out) {
+  while (!bytes.empty()) {
+    const auto length = static_cast<std::uint16_t>(std::min<std::size_t>(bytes.size(), 0xffff));
+    const auto complement = static_cast<std::uint16_t>(~length);
+    *out++ = std::byte{0};
+    std::memcpy(out, &length, 2);
+    std::memcpy(out + 2, &complement, 2);
+    std::memcpy(out + 4, bytes.data(), length);
+    out += 4 + length;
+    bytes = bytes.subspan(length);
+  }
+  return out;
+}
+
+// A zlib stream (RFC 1950) of `bytes` in `out`, the first `noise` of them stored as they are: the
+// compressor would spend most of its time finding nothing in them. Returns its length, or 0 if it
+// is not shorter than the input; `out` must have room for as many bytes as the input.
+std::size_t zlib_stream(libdeflate_compressor* compressor, std::span<const std::byte> bytes,
+                        std::size_t noise, std::byte* out) {
+  constexpr std::size_t kHeader = 2;
+  constexpr std::size_t kTrailer = 4;
+  const std::size_t blocks = (noise + 0xfffe) / 0xffff;
+  const std::size_t before = kHeader + noise + 5 * blocks;
+  if (before + kTrailer >= bytes.size()) return 0;
+  out[0] = std::byte{0x78};  // deflate, window of 32 KiB
+  out[1] = std::byte{0x01};  // fastest level, no dictionary, check bits
+  std::byte* const packed = put_stored_blocks(bytes.first(noise), out + kHeader);
+  const std::size_t length =
+      libdeflate_deflate_compress(compressor, bytes.data() + noise, bytes.size() - noise, packed,
+                                  bytes.size() - 1 - before - kTrailer);
+  if (length == 0) return 0;
+  const std::uint32_t adler = libdeflate_adler32(1, bytes.data(), bytes.size());
+  for (int i = 0; i < 4; ++i)
+    packed[length + i] = static_cast<std::byte>(adler >> (24 - 8 * i) & 0xff);
+  return before + length + kTrailer;
+}
+
+bool inflate(std::span<const std::byte> bytes, std::span<std::byte> out) {
+  const std::unique_ptr<libdeflate_decompressor, FreeDecompressor> decompressor(
+      libdeflate_alloc_decompressor());
+  if (!decompressor) throw std::bad_alloc();
+  std::size_t written = 0;
+  return libdeflate_zlib_decompress(decompressor.get(), bytes.data(), bytes.size(), out.data(),
+                                    out.size(), &written) == LIBDEFLATE_SUCCESS &&
+         written == out.size();
+}
+
+}  // namespace
+
+std::uint64_t xxh3_64(std::span<const std::byte> bytes) {
+  return XXH3_64bits(bytes.data(), bytes.size());
+}
+
+std::uint32_t fletcher32(std::span<const std::byte> bytes) {
+  // Big-endian 16-bit words modulo 65535, reduced seldom enough for 64-bit sums to be cheap and
+  // often enough for them not to overflow. A reduced sum is 0 only if every byte was: HDF5's
+  // choice between the two representations of zero.
+  constexpr std::size_t kBlock = 1 << 16;
+  const auto fold = [](std::uint64_t x) { return (x & 0xffff) + (x >> 16); };
+  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
+  std::uint64_t sum1 = 0;
+  std::uint64_t sum2 = 0;
+  for (std::size_t words = bytes.size() / 2; words > 0;) {
+    const std::size_t block = std::min(words, kBlock);
+    for (std::size_t i = 0; i < block; ++i, data += 2) {
+      sum1 += static_cast<std::uint64_t>(data[0]) << 8 | data[1];
+      sum2 += sum1;
+    }
+    sum1 = fold(fold(fold(sum1)));
+    sum2 = fold(fold(fold(fold(sum2))));
+    words -= block;
+  }
+  if (bytes.size() % 2 == 1) {
+    sum1 += static_cast<std::uint64_t>(data[0]) << 8;
+    sum2 += sum1;
+  }
+  sum1 = fold(fold(sum1));
+  sum2 = fold(fold(sum2));
+  return static_cast<std::uint32_t>(sum2 << 16 | sum1);
+}
+
+ArrayShape shape_of(const ArrayView& view, Compression compression) {
+  ArrayShape shape{view.stored_type, view.rows, view.columns, 1, compression};
+  shape.chunk_rows =
+      std::max<std::int64_t>(1, std::min(view.rows, kChunkBytes / shape.row_bytes()));
+  shape.compact = view.rows > 0 && view.rows * shape.row_bytes() <= kMostCompactBytes;
+  if (shape.compact) shape.compression = Compression::none;
+  return shape;
+}
+
+EncodedChunk encode_chunk(const ArrayView& view, std::int64_t index, Compression compression) {
+  const ArrayShape shape = shape_of(view, compression);
+  const std::int64_t count = shape.rows_in_chunk(index);
+  if (index < 0 || count <= 0) throw std::invalid_argument("chunk index out of range");
+  const auto size = static_cast<std::size_t>(count * shape.row_bytes());
+  const auto rows = std::make_unique_for_overwrite<std::byte[]>(size);
+  gather_rows(view, index * shape.chunk_rows, count, rows.get());
+  return encode_rows(shape, {rows.get(), size});
+}
+
+EncodedChunk encode_rows(const ArrayShape& shape, std::span<const std::byte> rows) {
+  const auto size = static_cast<std::size_t>(shape.chunk_bytes());
+  if (rows.size() > size) throw std::invalid_argument("more rows than a chunk holds");
+  EncodedChunk chunk;
+  chunk.raw_xxh3 = xxh3_64(rows);
+  if (shape.compact) {
+    chunk.bytes.assign(rows.begin(), rows.end());
+    return chunk;
+  }
+  std::vector<std::byte> padded;
+  if (rows.size() < size) {
+    padded.assign(rows.begin(), rows.end());
+    padded.resize(size);
+    rows = padded;
+  }
+  if (shape.compression == Compression::none) {
+    chunk.bytes = with_checksum(rows);
+    return chunk;
+  }
+  // One allocation for the shuffled bytes and the compressed ones, which are useful only if fewer.
+  const auto scratch = std::make_unique_for_overwrite<std::byte[]>(2 * size);
+  const auto element_size = static_cast<std::size_t>(size_of(shape.type));
+  shuffle(rows, element_size, scratch.get());
+  const Compressor compressor(libdeflate_alloc_compressor(kFastest));
+  if (!compressor) throw std::bad_alloc();
+  const bool real = shape.type == ElementType::float32 || shape.type == ElementType::float64;
+  const std::span<const std::byte> shuffled(scratch.get(), size);
+  const std::size_t noise = real ? noise_in_front(compressor.get(), shuffled, element_size) : 0;
+  const std::size_t packed = zlib_stream(compressor.get(), shuffled, noise, scratch.get() + size);
+  if (packed > 0) {
+    chunk.bytes = with_checksum({scratch.get() + size, packed});
+  } else {
+    chunk.bytes = with_checksum(rows);
+    chunk.filter_mask = kSkipShuffle | kSkipDeflate;
+  }
+  return chunk;
+}
+
+EncodedArray encode_array(const ArrayView& view, Compression compression) {
+  EncodedArray array{shape_of(view, compression), {}};
+  const std::int64_t count = array.shape.chunk_count();
+  array.chunks.reserve(static_cast<std::size_t>(count));
+  for (std::int64_t i = 0; i < count; ++i)
+    array.chunks.push_back(encode_chunk(view, i, compression));
+  return array;
+}
+
+bool decode_chunk(const ArrayShape& shape, std::span<const std::byte> bytes,
+                  std::uint32_t filter_mask, std::span<std::byte> rows) {
+  if (shape.compact) {
+    if (bytes.size() != rows.size()) return false;
+    std::ranges::copy(bytes, rows.begin());
+    return true;
+  }
+  if (bytes.size() < kChecksumBytes) return false;
+  const std::span<const std::byte> body = bytes.first(bytes.size() - kChecksumBytes);
+  std::uint32_t sum = 0;
+  std::memcpy(&sum, bytes.data() + body.size(), kChecksumBytes);
+  if (sum != fletcher32(body)) return false;
+
+  if (shape.compression == Compression::none || filter_mask == (kSkipShuffle | kSkipDeflate)) {
+    if (body.size() != rows.size()) return false;
+    std::memcpy(rows.data(), body.data(), rows.size());
+    return true;
+  }
+  if (filter_mask != 0) return false;  // no writer of this format skips one filter alone
+  const auto element_size = static_cast<std::size_t>(size_of(shape.type));
+  if (element_size == 1) return inflate(body, rows);
+  const auto shuffled = std::make_unique_for_overwrite<std::byte[]>(rows.size());
+  if (!inflate(body, {shuffled.get(), rows.size()})) return false;
+  unshuffle({shuffled.get(), rows.size()}, element_size, rows.data());
+  return true;
+}
+
+}  // namespace semigeo::io

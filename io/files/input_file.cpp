@@ -1,0 +1,82 @@
+#include "io/files/input_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "io/files/error.hpp"
+
+namespace semigeo::io {
+namespace {
+
+std::string system_message(int code) {
+  return std::generic_category().message(code);
+}
+
+Error open_error(const std::filesystem::path& path, int code) {
+  if (code == ENOENT || code == ENOTDIR)
+    return Error(path, "", "there is no such file", "check the path");
+  if (code == EACCES || code == EPERM)
+    return Error(path, "", "reading is not permitted", "change its permissions (chmod +r)");
+  return Error(path, "", "cannot be opened: " + system_message(code));
+}
+
+}  // namespace
+
+InputFile::InputFile(std::filesystem::path path) : path_(std::move(path)) {
+  // O_NONBLOCK: opening a pipe must not wait for a writer; it has no effect on regular files.
+  descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor_ < 0) throw open_error(path_, errno);
+  struct stat status {};
+  const bool known = ::fstat(descriptor_, &status) == 0;
+  if (known && S_ISREG(status.st_mode)) {
+    size_ = status.st_size;
+    return;
+  }
+  ::close(descriptor_);
+  if (known && S_ISDIR(status.st_mode))
+    throw Error(path_, "", "is a folder, not a file", "name a file in it");
+  throw Error(path_, "", "is not a regular file", "copy its contents into a file first");
+}
+
+InputFile::~InputFile() {
+  ::close(descriptor_);
+}
+
+std::size_t InputFile::read(std::span<char> bytes) {
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t got = ::read(descriptor_, bytes.data() + done, bytes.size() - done);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail(static_cast<std::uint64_t>(position_));
+    if (got == 0) break;
+    done += static_cast<std::size_t>(got);
+    position_ += got;
+  }
+  return done;
+}
+
+std::size_t InputFile::read_at(std::uint64_t offset, std::span<char> bytes) const {
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t got = ::pread(descriptor_, bytes.data() + done, bytes.size() - done,
+                                static_cast<off_t>(offset + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail(offset + done);
+    if (got == 0) break;
+    done += static_cast<std::size_t>(got);
+  }
+  return done;
+}
+
+void InputFile::fail(std::uint64_t offset) const {
+  throw Error(path_, "byte " + std::to_string(offset), "cannot be read: " + system_message(errno),
+              "check the disk it is on");
+}
+
+}  // namespace semigeo::io

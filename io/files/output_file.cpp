@@ -1,0 +1,54 @@
+#include "io/files/output_file.hpp"
+
+#include <cerrno>
+#include <string>
+#include <system_error>
+
+#include "io/files/error.hpp"
+
+namespace semigeo::io {
+namespace {
+
+constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
+
+}  // namespace
+
+OutputFile::OutputFile(const std::filesystem::path& path)
+    : file_(path), stream_(std::fopen(file_.temporary_path().c_str(), "wb")) {
+  if (!stream_) fail("cannot be created");
+  buffer_.reserve(kBufferBytes + 64);
+}
+
+void OutputFile::commit() {
+  close();
+  file_.commit();
+}
+
+void OutputFile::commit_unsynced() {
+  close();
+  file_.commit_unsynced();
+}
+
+void OutputFile::close() {
+  flush();
+  // Only the closing reports the last of the failures.
+  if (std::fclose(stream_.release()) != 0) fail("cannot be written");
+}
+
+void OutputFile::add(const char* bytes, std::size_t count) {
+  buffer_.insert(buffer_.end(), bytes, bytes + count);
+  if (buffer_.size() >= kBufferBytes) flush();
+}
+
+void OutputFile::flush() {
+  if (std::fwrite(buffer_.data(), 1, buffer_.size(), stream_.get()) != buffer_.size())
+    fail("cannot be written");
+  buffer_.clear();
+}
+
+void OutputFile::fail(const char* problem) const {
+  throw Error(path(), "", std::string(problem) + ": " + std::generic_category().message(errno),
+              "check the folder, its permissions and the free space");
+}
+
+}  // namespace semigeo::io

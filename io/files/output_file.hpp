@@ -1,0 +1,94 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "io/files/atomic_file.hpp"
+
+namespace semigeo::io {
+
+/// A file that appears whole or not at all, written from its beginning to its end. Every failure of
+/// the disk is an Error that names it.
+class OutputFile {
+ public:
+  explicit OutputFile(const std::filesystem::path& path);
+
+  const std::filesystem::path& path() const { return file_.final_path(); }
+
+  void text(std::string_view bytes) { add(bytes.data(), bytes.size()); }
+
+  /// As bytes, little endian.
+  template <typename Number>
+  void number(Number value) {
+    std::array<char, sizeof value> bytes;
+    std::memcpy(bytes.data(), &value, bytes.size());
+    if constexpr (std::endian::native == std::endian::big) std::reverse(bytes.begin(), bytes.end());
+    add(bytes.data(), bytes.size());
+  }
+
+  /// As text: the shortest that reads back as the same number, in any locale.
+  template <typename Number>
+  void decimal(Number value) {
+    std::array<char, 32> digits;
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+    add(digits.data(), static_cast<std::size_t>(end - digits.data()));
+  }
+
+  /// Gives the file its name; to be called last.
+  void commit();
+  /// As AtomicFile::commit_unsynced.
+  void commit_unsynced();
+
+ private:
+  struct Close {
+    void operator()(std::FILE* stream) const { std::fclose(stream); }
+  };
+  void add(const char* bytes, std::size_t count);
+  void flush();
+  void close();
+  [[noreturn]] void fail(const char* problem) const;
+
+  AtomicFile file_;
+  std::unique_ptr<std::FILE, Close> stream_;  // after file_, so that it is closed before it goes
+  std::vector<char> buffer_;
+};
+
+/// The beginning of every PLY that semigeo writes.
+inline constexpr const char* kPlyBegin =
+    "ply\nformat binary_little_endian 1.0\ncomment written by semigeo\n";
+
+/// Coordinates of what is stored relative to an origin: doubles where that is not zero, which keeps
+/// map coordinates exact, else the floats as they are.
+class Placement {
+ public:
+  explicit Placement(const std::array<double, 3>& origin)
+      : origin_(origin), far_(origin != std::array<double, 3>{}) {}
+
+  const char* ply_type() const { return far_ ? "double" : "float"; }
+
+  /// Calls put(coordinate) for x, y and z.
+  template <typename Put>
+  void place(const float* point, const Put& put) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (far_) {
+        put(point[axis] + origin_[axis]);
+      } else {
+        put(point[axis]);
+      }
+    }
+  }
+
+ private:
+  std::array<double, 3> origin_;
+  bool far_;
+};
+
+}  // namespace semigeo::io

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/hdf5/for_each.hpp"
+#include "io/hdf5/hdf5_array.hpp"
+
+namespace semigeo::io {
+
+/// Fingerprint of everything a file says: XXH3_128 over one line of text per object, sorted, so
+/// that neither the order of writing nor HDF5's layout matters. io/DATASET.md lists the lines.
+/// The attributes `digest` and `complete` of the root are left out.
+class ContentDigest {
+ public:
+  void add_group(const std::string& path);
+  /// `chunk_hashes`: EncodedChunk::raw_xxh3 of every chunk, in order.
+  void add_array(const std::string& path, const ArrayShape& shape,
+                 std::span<const std::uint64_t> chunk_hashes);
+  void add_virtual(const std::string& path, ElementType type, std::int64_t rows, int columns,
+                   std::span<const VirtualPiece> pieces);
+  void add_attribute(const std::string& object, const std::string& name, const std::string& type,
+                     const AttributeValue& value);
+  /// A further name of an object whose first name, in the order of paths, is `first`.
+  void add_link(const std::string& path, const std::string& first);
+
+  /// 32 hexadecimal digits.
+  std::string hex() const;
+
+ private:
+  std::set<std::string> lines_;
+};
+
+/// The path of an array, the first row of a chunk, and its rows.
+using SeenRows = std::function<void(const std::string&, std::int64_t, std::span<const std::byte>)>;
+
+/// The digest of what `file` holds, by reading all of it, one chunk in memory at a time, or some if
+/// `for_each` has several threads. Error when a checksum is wrong or an object is none that a
+/// dataset uses. `seen` is given each chunk of each array as it goes by: in order, or by several
+/// threads at once.
+std::string content_digest(const Hdf5File& file, const SeenRows& seen = {},
+                           const ForEach& for_each = {});
+
+/// An HDF5 file in the making that enters each object in the digest as it is written.
+class DigestedFile {
+ public:
+  explicit DigestedFile(Hdf5File file) : file_(std::move(file)) { digest_.add_group("/"); }
+
+  void create_group(const std::string& path);
+  void write_array(const std::string& path, const EncodedArray& array);
+  /// An array whose chunks come one by one. This object must outlive it and stay where it is.
+  class Growing {
+   public:
+    const ArrayShape& shape() const { return array_.shape(); }
+    void write_chunk(const EncodedChunk& chunk);  ///< the next
+    /// To be called after the last chunk.
+    void close();
+
+   private:
+    friend class DigestedFile;
+    Growing(ContentDigest& digest, Hdf5File::Growing array)
+        : digest_(&digest), array_(std::move(array)) {}
+    ContentDigest* digest_;
+    Hdf5File::Growing array_;
+    std::vector<std::uint64_t> hashes_;
+  };
+  Growing begin_array(const std::string& path, const ArrayShape& shape);
+  void write_virtual(const std::string& path, ElementType type, int columns,
+                     std::span<const VirtualPiece> pieces);
+  void write_attribute(const std::string& object, const std::string& name,
+                       const AttributeValue& value);
+  void link(const std::string& existing, const std::string& path);
+
+  const ContentDigest& digest() const { return digest_; }
+  /// For what the digest leaves out.
+  Hdf5File& file() { return file_; }
+
+ private:
+  Hdf5File file_;
+  ContentDigest digest_;
+};
+
+}  // namespace semigeo::io

@@ -1,0 +1,214 @@
+#include "io/hdf5/hdf5.hpp"
+
+#include <algorithm>
+#include <new>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "io/files/error.hpp"
+#include "io/hdf5/hdf5_library.hpp"
+
+namespace semigeo::io {
+namespace {
+
+constexpr const char* kDamaged =
+    "the file is damaged or not one of semigeo's: remove it and run again, or run with --verify";
+
+constexpr unsigned kMostInHeader = 48;
+
+/// What HDF5 says of an error; nothing if there was no memory to keep it in.
+using Reason = std::optional<std::string>;
+
+herr_t keep_first(unsigned, const H5E_error2_t* error, void* reason) noexcept {
+  try {
+    *static_cast<Reason*>(reason) = error->desc == nullptr ? "" : error->desc;
+  } catch (const std::bad_alloc&) {
+    static_cast<Reason*>(reason)->reset();
+  }
+  return 1;  // stop: the walk began at the innermost entry
+}
+
+Hdf5Handle file_access() {
+  Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_V110);
+  H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
+  // Files are renamed when whole and never changed in place, so that locks protect nothing, and
+  // network file systems without locks would refuse to open them.
+  H5Pset_file_locking(access.get(), false, true);
+  return access;
+}
+
+// No times, and up to kMostInHeader entries or attributes in the group's header: beyond, each group
+// gets a heap and an index of some kB for them.
+void prepare_group(hid_t properties) {
+  H5Pset_obj_track_times(properties, false);
+  H5Pset_link_phase_change(properties, kMostInHeader, kMostInHeader / 2);
+  H5Pset_attr_phase_change(properties, kMostInHeader, kMostInHeader / 2);
+}
+
+herr_t collect_link(hid_t, const char* name, const H5L_info_t* info, void* data) noexcept {
+  try {
+    static_cast<std::vector<Hdf5Link>*>(data)->push_back(
+        {name, Hdf5Link::Kind::other, info->type == H5L_TYPE_HARD ? info->u.address : 0});
+    return 0;
+  } catch (...) {
+    return -1;
+  }
+}
+
+}  // namespace
+
+// Once per process: at exit HDF5 would flush what a full disk left it with, and crash.
+// Once per thread: HDF5 would print its error stack, and keeps that setting per thread.
+void prepare_library() {
+  static const int no_exit_handler = H5dont_atexit();
+  thread_local const int quiet = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  static_cast<void>(no_exit_handler);
+  static_cast<void>(quiet);
+}
+
+// HDF5's innermost reason; of its report on a system call only the system's own words.
+std::string innermost_reason() {
+  Reason reason = "";
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &reason);
+  if (!reason) throw std::bad_alloc();  // a C library must not be thrown through
+  std::string text = std::move(*reason);
+  constexpr std::string_view kMark = "error message = '";
+  const std::size_t mark = text.find(kMark);
+  if (mark != std::string::npos) {
+    const std::size_t begin = mark + kMark.size();
+    text = text.substr(begin, text.find('\'', begin) - begin);
+  }
+  return text.empty() ? "HDF5 gives no reason" : text;
+}
+
+void Hdf5File::fail(const std::string& place, const std::string& action) const {
+  const std::string reason = innermost_reason();
+  const bool full = reason.find("No space left") != std::string::npos;
+  throw Error(shown_as_, place, "cannot " + action + ": " + reason,
+              full       ? "free some space and run again"
+              : writing_ ? "check the disk and the memory, and run again"
+                         : kDamaged);
+}
+
+void Hdf5File::refuse(const std::string& place, const std::string& problem) const {
+  throw Error(shown_as_, place, problem, kDamaged);
+}
+
+std::int64_t Hdf5File::checked(std::int64_t result, const std::string& place,
+                               const char* action) const {
+  if (result < 0) fail(place, action);
+  return result;
+}
+
+std::int64_t Hdf5File::id() const {
+  prepare_library();
+  return handle_.get();
+}
+
+Hdf5File Hdf5File::create(const std::filesystem::path& file,
+                          const std::filesystem::path& shown_as) {
+  prepare_library();
+  const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  prepare_group(creation.get());
+  const Hdf5Handle access = file_access();
+  Hdf5File result({}, shown_as.empty() ? file : shown_as, true);
+  result.handle_ = Hdf5Handle(
+      result.checked(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), "",
+                     "create it"),
+      H5Fclose);
+  return result;
+}
+
+Hdf5File Hdf5File::open(const std::filesystem::path& file, const std::filesystem::path& shown_as) {
+  prepare_library();
+  const Hdf5Handle access = file_access();
+  Hdf5File result({}, shown_as.empty() ? file : shown_as, false);
+  result.handle_ = Hdf5Handle(
+      result.checked(H5Fopen(file.c_str(), H5F_ACC_RDONLY, access.get()), "", "open it"), H5Fclose);
+  return result;
+}
+
+void Hdf5File::create_group(const std::string& path) {
+  const Entry place = entry(path);
+  const Hdf5Handle properties(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  prepare_group(properties.get());
+  Hdf5Handle group(
+      checked(H5Gcreate2(place.group, place.name, H5P_DEFAULT, properties.get(), H5P_DEFAULT), path,
+              "create the group"),
+      H5Oclose);
+  checked(opened_.close(), opened_path_, "close the object");
+  opened_ = std::move(group);
+  opened_path_ = path;
+}
+
+void Hdf5File::link(const std::string& existing, const std::string& path) {
+  const Entry place = entry(path);
+  checked(H5Lcreate_hard(handle_.get(), existing.c_str(), place.group, place.name, H5P_DEFAULT,
+                         H5P_DEFAULT),
+          path, "create the link");
+  const auto known = arrays_.find(existing);
+  if (known != arrays_.end()) arrays_.emplace(path, known->second);
+}
+
+void Hdf5File::flush() {
+  checked(H5Fflush(id(), H5F_SCOPE_LOCAL), "", "flush it");
+}
+
+void Hdf5File::close() {
+  prepare_library();
+  checked(opened_.close(), std::exchange(opened_path_, ""), "close the object");
+  checked(handle_.close(), "", "close it");
+}
+
+std::int64_t Hdf5File::opened(const std::string& path) const {
+  const std::int64_t file = id();
+  if (path.empty() || path == "/") return file;
+  if (path != opened_path_) {
+    checked(opened_.close(), std::exchange(opened_path_, ""), "close the object");
+    opened_ = Hdf5Handle(checked(H5Oopen(file, path.c_str(), H5P_DEFAULT), path, "open the object"),
+                         H5Oclose);
+    opened_path_ = path;
+  }
+  return opened_.get();
+}
+
+Hdf5File::Entry Hdf5File::entry(const std::string& path) const {
+  const std::size_t slash = path.rfind('/');
+  if (slash == std::string::npos) return {id(), path.c_str()};
+  return {opened(path.substr(0, slash)), path.c_str() + slash + 1};
+}
+
+bool Hdf5File::has(const std::string& path) const {
+  if (path.empty() || path == "/" || path == opened_path_ || arrays_.contains(path)) return true;
+  if (!has(path.substr(0, path.rfind('/')))) return false;
+  const Entry place = entry(path);
+  return H5Lexists(place.group, place.name, H5P_DEFAULT) > 0;
+}
+
+std::vector<Hdf5Link> Hdf5File::links(const std::string& group) const {
+  const std::int64_t place = opened(group);
+  std::vector<Hdf5Link> result;
+  checked(H5Literate(place, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_link, &result), group,
+          "list the group");
+  for (Hdf5Link& entry : result) {
+    if (entry.address == 0) continue;  // a soft or external link
+    H5O_info_t info;
+    checked(H5Oget_info_by_name2(place, entry.name.c_str(), &info, H5O_INFO_BASIC, H5P_DEFAULT),
+            (group == "/" ? "" : group) + "/" + entry.name, "open the object");
+    if (info.type == H5O_TYPE_GROUP) entry.kind = Hdf5Link::Kind::group;
+    if (info.type == H5O_TYPE_DATASET) entry.kind = Hdf5Link::Kind::array;
+  }
+  std::ranges::sort(result, {}, &Hdf5Link::name);
+  return result;
+}
+
+std::uint64_t Hdf5File::address(const std::string& path) const {
+  H5O_info_t info;
+  checked(H5Oget_info_by_name2(id(), path.c_str(), &info, H5O_INFO_BASIC, H5P_DEFAULT), path,
+          "open the object");
+  return info.addr;
+}
+
+}  // namespace semigeo::io

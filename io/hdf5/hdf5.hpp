@@ -1,0 +1,176 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "io/files/chunk_codec.hpp"
+
+namespace semigeo::io {
+
+using AttributeValue =
+    std::variant<std::int64_t, double, std::string, std::vector<std::int64_t>, std::vector<double>>;
+
+/// "int64", "float64[3]", "ascii[8]" or "utf8[9]" (bytes): how an attribute is stored.
+std::string attribute_type(const AttributeValue& value);
+
+/// A whole dataset of the same file that a virtual dataset shows as its next rows.
+struct VirtualPiece {
+  std::string source;  ///< absolute path
+  std::int64_t rows;   ///< of the virtual dataset; (F, 3) seen as one column has 3 F of them
+  friend bool operator==(const VirtualPiece&, const VirtualPiece&) = default;
+};
+
+/// An entry of a group.
+struct Hdf5Link {
+  enum class Kind { group, array, other };
+  std::string name;
+  Kind kind;
+  std::uint64_t address;  ///< the same for every hard link to one object
+};
+
+struct Hdf5Attribute {
+  std::string name;
+  std::string type;  ///< as io::attribute_type has it
+  AttributeValue value;
+};
+
+/// Owns an HDF5 identifier (hid_t, whose header only hdf5_library.hpp includes).
+class Hdf5Handle {
+ public:
+  using Close = int (*)(std::int64_t);
+  Hdf5Handle() = default;
+  Hdf5Handle(std::int64_t id, Close closer) : id_(id), close_(closer) {}
+  Hdf5Handle(Hdf5Handle&& other) noexcept
+      : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Hdf5Handle& operator=(Hdf5Handle&& other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(close_, other.close_);
+    return *this;
+  }
+  ~Hdf5Handle() { close(); }
+  std::int64_t get() const { return id_; }
+  /// Negative if HDF5 reports a failure; closing twice does nothing.
+  int close() { return id_ < 0 ? 0 : close_(std::exchange(id_, -1)); }
+
+ private:
+  std::int64_t id_ = -1;
+  Close close_ = nullptr;
+};
+
+/// An HDF5 file restricted to what semigeo stores: groups, attributes of AttributeValue's types
+/// with strings of fixed length, arrays of one or two dimensions chunked by rows or compact,
+/// virtual arrays over arrays of the same file, and hard links. Anything else is an Error when met.
+///
+/// Every failure is an Error that names the file, the object and HDF5's innermost reason. One
+/// thread at a time per file; HDF5 itself serialises calls for different files.
+class Hdf5File {
+ public:
+  /// Creates or overwrites. The same sequence of calls gives the same bytes. Messages name
+  /// `shown_as` if given: the final name of a file that is written under a temporary one.
+  static Hdf5File create(const std::filesystem::path& file,
+                         const std::filesystem::path& shown_as = {});
+  /// Read-only.
+  static Hdf5File open(const std::filesystem::path& file,
+                       const std::filesystem::path& shown_as = {});
+
+  const std::filesystem::path& path() const { return shown_as_; }
+
+  void create_group(const std::string& path);
+  void write_array(const std::string& path, const EncodedArray& array);
+  class Growing;  // io/hdf5/hdf5_array.hpp
+  /// An array whose chunks come one by one; others may be written in between.
+  Growing begin_array(const std::string& path, const ArrayShape& shape);
+  void write_virtual(const std::string& path, ElementType type, int columns,
+                     std::span<const VirtualPiece> pieces);
+  void write_attribute(const std::string& object, const std::string& name,
+                       const AttributeValue& value);
+  void link(const std::string& existing, const std::string& path);
+  void flush();
+  /// Flushes and closes; nothing else may be called afterwards. The destructor closes too, but
+  /// silently.
+  void close();
+
+  bool has(const std::string& path) const;
+  bool has_attribute(const std::string& object, const std::string& name) const;
+  /// Entries of a group, by name.
+  std::vector<Hdf5Link> links(const std::string& group) const;
+  std::uint64_t address(const std::string& path) const;
+  /// All of an object's, by name. Looking at one of them again costs nothing.
+  const std::vector<Hdf5Attribute>& attributes(const std::string& object) const;
+  AttributeValue read_attribute(const std::string& object, const std::string& name) const;
+  /// The same where only this type will do; Error if it has another.
+  template <typename Value>
+  Value read_attribute_as(const std::string& object, const std::string& name) const {
+    const AttributeValue value = read_attribute(object, name);
+    if (const Value* known = std::get_if<Value>(&value)) return *known;
+    refuse(object, "its attribute " + name + " has the wrong type");
+  }
+  /// As io::attribute_type, or "unsupported".
+  std::string attribute_type(const std::string& object, const std::string& name) const;
+
+  class Array;  // io/hdf5/hdf5_array.hpp
+  /// What it is, and all of a small array, is looked at once: opening it again costs nothing.
+  Array open_array(const std::string& path) const;
+  ArrayShape shape_of(const std::string& path) const { return look_at(path).shape; }
+  bool is_virtual(const std::string& path) const { return look_at(path).is_virtual; }
+
+  /// A whole array by way of HDF5's own filters and virtual mappings, as little-endian rows. For
+  /// tests: slow, and believes the file about its size.
+  std::vector<std::byte> read_through_library(const std::string& path) const;
+
+  [[noreturn]] void refuse(const std::string& place, const std::string& problem) const;
+
+ private:
+  Hdf5File(Hdf5Handle handle, std::filesystem::path shown_as, bool writing)
+      : handle_(std::move(handle)), shown_as_(std::move(shown_as)), writing_(writing) {}
+  [[noreturn]] void fail(const std::string& place, const std::string& action) const;
+  std::int64_t checked(std::int64_t result, const std::string& place, const char* action) const;
+  std::int64_t id() const;
+  /// The object, open until another one is asked for: most calls are about that of the one before.
+  std::int64_t opened(const std::string& path) const;
+  struct Entry {
+    std::int64_t group;  // of an object, open
+    const char* name;    // of the object in it; lives as long as the path
+  };
+  Entry entry(const std::string& path) const;
+  std::int64_t type_of(ElementType type) const;
+  std::optional<ElementType> element_type(std::int64_t type) const;
+  Hdf5Attribute read(const Hdf5Handle& attribute, const std::string& object,
+                     const std::string& name) const;
+  const Hdf5Attribute* find_known(const std::string& object, const std::string& name) const;
+  Hdf5Handle open_attribute(const std::string& object, const std::string& name) const;
+
+  struct KnownArray {
+    ArrayShape shape;
+    bool is_virtual = false;
+    std::vector<VirtualPiece> pieces;  // of a virtual one
+    std::vector<std::byte> rows;       // of a compact one
+  };
+  const KnownArray& look_at(const std::string& path) const;
+  KnownArray described(const std::string& path, std::int64_t array) const;
+  void describe_chunks(const std::string& path, std::int64_t creation, ArrayShape& shape) const;
+  std::vector<std::byte> compact_rows(const std::string& path, std::int64_t array,
+                                      const ArrayShape& shape) const;
+  std::vector<VirtualPiece> pieces_of(const std::string& path, std::int64_t creation,
+                                      int columns) const;
+
+  Hdf5Handle handle_;
+  std::filesystem::path shown_as_;
+  bool writing_ = false;
+  // What has been looked at or written, neither of which changes.
+  mutable std::map<std::string, KnownArray> arrays_;
+  mutable std::map<std::string, std::vector<Hdf5Attribute>> attributes_;
+  mutable std::map<ElementType, Hdf5Handle> records_;  // types of theirs
+  mutable std::string opened_path_;
+  mutable Hdf5Handle opened_;  // after handle_, so that it is closed before
+};
+
+}  // namespace semigeo::io

@@ -1,0 +1,36 @@
+#pragma once
+
+// The one place where semigeo includes HDF5's header; for the sources of io/hdf5/hdf5.hpp alone.
+
+#include <hdf5.h>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+
+#include "io/hdf5/hdf5.hpp"
+
+namespace semigeo::io {
+
+static_assert(std::is_same_v<hid_t, std::int64_t> && std::is_same_v<herr_t, int>);
+
+/// Before any other call in a thread: no error printing, no exit handler.
+void prepare_library();
+
+/// Why the last call failed. Every call of the library forgets it.
+std::string innermost_reason();
+
+using Extent = std::array<hsize_t, 2>;
+
+inline Extent extent(std::int64_t rows, int columns) {
+  return {static_cast<hsize_t>(rows), static_cast<hsize_t>(columns)};
+}
+
+/// (rows) or (rows, columns).
+inline Hdf5Handle make_space(std::int64_t rows, int columns) {
+  const Extent size = extent(rows, columns);
+  return {H5Screate_simple(columns == 1 ? 1 : 2, size.data(), nullptr), H5Sclose};
+}
+
+}  // namespace semigeo::io

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/files/binary_file.hpp"
+#include "io/library/shape_range.hpp"
+
+namespace semigeo::io {
+
+/// What a partition says of itself.
+struct PartitionHeader {
+  std::string job_key;
+  ShapeRange shapes;
+  std::int64_t models = 0;      ///< of the library
+  std::uint64_t runs_hash = 0;  ///< runs_hash of the runs that it was made of
+};
+
+/// XXH3_64 of TripletRun::content_hash of all runs, in the order of models.
+std::uint64_t runs_hash(std::span<const std::uint64_t> content_hashes);
+
+/// Writes the postings of a range of shapes (io/LIBRARY.md), piece by piece; the file appears under
+/// its name when it is whole, unless the power is cut meanwhile: what is removed as soon as the
+/// library is made is not forced to the disk. Memory: two blocks.
+class PostingPartitionWriter {
+ public:
+  PostingPartitionWriter(const std::filesystem::path& path, PartitionHeader header);
+  /// The next postings, packed as ElementType::posting, in the order of cell, model, corners.
+  void add(std::span<const std::byte> rows);
+  /// How many postings each cell of the range has. std::invalid_argument if these are not as many
+  /// as were added.
+  void finish(std::span<const std::uint32_t> cell_counts);
+
+ private:
+  void write_block(std::span<const std::byte> rows);
+
+  PartitionHeader header_;
+  BinaryWriter file_;
+  std::vector<std::byte> pending_;
+  std::vector<std::uint64_t> block_hashes_;
+  std::uint64_t postings_ = 0;
+};
+
+/// Reads a partition: its head at once, its postings block by block, each against a checksum. Every
+/// failure is an Error that names the file and what is wrong with it. Thread-safe.
+class PostingPartition {
+ public:
+  explicit PostingPartition(const std::filesystem::path& path);
+
+  const std::filesystem::path& path() const { return file_.path(); }
+  const PartitionHeader& header() const { return header_; }
+  /// Of each cell of the range.
+  std::span<const std::uint32_t> cell_counts() const { return cell_counts_; }
+  std::int64_t postings() const { return postings_; }
+  std::int64_t blocks() const { return static_cast<std::int64_t>(block_hashes_.size()); }
+  /// Packed postings, at most 65,536.
+  std::vector<std::byte> read_block(std::int64_t block) const;
+
+ private:
+  BinaryFile file_;
+  PartitionHeader header_;
+  std::vector<std::uint32_t> cell_counts_;
+  std::int64_t postings_ = 0;
+  std::vector<std::uint64_t> block_hashes_;
+};
+
+/// The key of the job that made a partition; Error if the file is not a whole partition of this
+/// version, or damaged in any place: it reads all of it.
+std::string posting_partition_key(const std::filesystem::path& path);
+
+}  // namespace semigeo::io

@@ -1,0 +1,93 @@
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+#include <vector>
+
+#include "io/scans/scan_builder.hpp"
+#include "io/scans/scan_formats.hpp"
+#include "io/scans/text_scanner.hpp"
+
+namespace semigeo::io {
+namespace {
+
+constexpr const char* kMendLine = "correct the line or export the scan again";
+
+bool is_keyword(std::string_view word) {
+  return std::all_of(word.begin(), word.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+
+class ObjBody {
+ public:
+  ObjBody(ByteSource& source, ScanBuilder& builder)
+      : scanner_(source, {.hash_comments = true, .backslash_continues = true}), builder_(builder) {}
+
+  void read() {
+    while (scanner_.skip_to_content()) {
+      const std::string_view keyword = scanner_.word();
+      if (keyword == "v") {
+        read_vertex();
+      } else if (keyword == "f") {
+        read_face();
+      } else if (!is_keyword(keyword)) {
+        scanner_.fail("the line does not begin with a keyword of OBJ (v, f, ...)", kMendLine);
+      }
+      if (!scanner_.next_line()) break;
+    }
+  }
+
+ private:
+  Place place() const { return {Place::Unit::line, scanner_.line()}; }
+
+  void read_vertex() {
+    const Place place = this->place();
+    const double x = scanner_.number("the x coordinate");
+    const double y = scanner_.number("the y coordinate");
+    const double z = scanner_.number("the z coordinate");
+    builder_.add_point(x, y, z, place);
+  }
+
+  void read_face() {
+    const Place place = this->place();
+    corners_.clear();
+    while (!scanner_.at_line_end()) {
+      builder_.check_corner_count(static_cast<std::int64_t>(corners_.size()) + 1, place);
+      corners_.push_back(read_corner());
+    }
+    builder_.add_face(corners_, place);
+  }
+
+  /// v, v/vt, v//vn or v/vt/vn, of which only v counts; zero-based. Negative numbers count back
+  /// from the last vertex above the line.
+  std::int64_t read_corner() {
+    const std::string_view word = scanner_.word();
+    const char* const end = word.data() + word.size();
+    std::int64_t index = 0;
+    const auto [stop, status] = std::from_chars(word.data(), end, index);
+    if (status != std::errc{} || (stop != end && *stop != '/'))
+      scanner_.fail("a face has a corner that is not v, v/vt, v//vn or v/vt/vn", kMendLine);
+    if (index > 0) return index - 1;
+    if (index == 0) scanner_.fail("a face refers to vertex 0, but OBJ counts from 1", kMendLine);
+    if (index < -builder_.point_count())
+      scanner_.fail("a face refers to vertex " + std::to_string(index) + ", but only " +
+                        std::to_string(builder_.point_count()) + " vertices stand above it",
+                    kMendLine);
+    return builder_.point_count() + index;
+  }
+
+  TextScanner scanner_;
+  ScanBuilder& builder_;
+  std::vector<std::int64_t> corners_;
+};
+
+}  // namespace
+
+Scan read_obj(ByteSource& source, const ScanLimits& limits) {
+  ScanBuilder builder(source, limits);
+  builder.set_index_base(1);
+  ObjBody(source, builder).read();
+  return builder.finish("OBJ");
+}
+
+}  // namespace semigeo::io

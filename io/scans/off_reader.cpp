@@ -1,0 +1,221 @@
+#include <bit>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/files/binary_load.hpp"
+#include "io/scans/scan_builder.hpp"
+#include "io/scans/scan_formats.hpp"
+#include "io/scans/text_scanner.hpp"
+
+namespace semigeo::io {
+namespace {
+
+constexpr const char* kMendLine = "correct the line or export the scan again";
+
+struct OffHeader {
+  std::string keyword = "OFF";  ///< with the prefixes that add to its vertices: "STCNOFF"
+  bool binary = false;
+  std::int64_t vertex_bytes = 12;  ///< of a binary vertex: its position and what the prefixes add
+};
+
+/// Reads the keyword, which may be absent.
+OffHeader read_keyword(TextScanner& scanner) {
+  const std::string_view word = scanner.peek();
+  OffHeader header;
+  if (word.find_first_not_of("0123456789") == std::string_view::npos) return header;
+  std::string_view rest = word;
+  for (std::size_t before = 0; before != rest.size();) {
+    before = rest.size();
+    const auto strip = [&](std::string_view prefix, std::int64_t floats) {
+      if (!rest.starts_with(prefix)) return;
+      rest.remove_prefix(prefix.size());
+      header.vertex_bytes += 4 * floats;
+    };
+    strip("ST", 2);
+    strip("C", 4);
+    strip("N", 3);
+  }
+  if (rest == "4OFF" || rest == "nOFF" || rest == "4nOFF")
+    scanner.fail("OFF files with other than three dimensions are not supported",
+                 "export the scan in three dimensions");
+  if (rest != "OFF")
+    scanner.fail("this is not an OFF file: it begins neither with OFF nor with the counts",
+                 "correct its extension");
+  header.keyword = scanner.word();
+  return header;
+}
+
+OffHeader read_header(TextScanner& scanner) {
+  if (!scanner.skip_to_content())
+    scanner.fail("the file holds nothing but comments", "export the scan again");
+  OffHeader header = read_keyword(scanner);
+  header.binary = scanner.peek() == "BINARY";
+  if (header.binary && !scanner.next_line())
+    scanner.fail("the file ends after its header", "copy the file again from its source");
+  return header;
+}
+
+struct Counts {
+  std::int64_t vertices = 0;
+  std::int64_t faces = 0;
+};
+
+class OffText {
+ public:
+  OffText(TextScanner& scanner, ScanBuilder& builder) : scanner_(scanner), builder_(builder) {}
+
+  void read() {
+    const Counts counts = read_counts();
+    for (std::int64_t i = 0; i < counts.vertices; ++i) {
+      begin_line("vertices", counts.vertices, i);
+      const double x = scanner_.number("the x coordinate");
+      const double y = scanner_.number("the y coordinate");
+      const double z = scanner_.number("the z coordinate");
+      builder_.add_point(x, y, z, place());
+      scanner_.next_line();  // over normals and colours, which some files have unannounced
+    }
+    for (std::int64_t i = 0; i < counts.faces; ++i) {
+      begin_line("faces", counts.faces, i);
+      read_face();
+      scanner_.next_line();  // over the colour
+    }
+    scanner_.skip_to_content();  // comments at the end
+  }
+
+ private:
+  Place place() const { return {Place::Unit::line, scanner_.line()}; }
+
+  Counts read_counts() {
+    scanner_.skip_to_content();
+    const Counts counts{.vertices = scanner_.integer("the number of vertices"),
+                        .faces = scanner_.integer("the number of faces")};
+    if (counts.vertices < 0 || counts.faces < 0)
+      scanner_.fail("the header has a negative count", kMendLine);
+    builder_.promise_points(counts.vertices, 5, place());  // "0 0 0"
+    builder_.promise_faces(counts.faces, 1, place());      // "0"
+    scanner_.next_line();  // over the number of edges, which nobody needs
+    return counts;
+  }
+
+  void begin_line(std::string_view what, std::int64_t promised, std::int64_t found) {
+    if (!scanner_.skip_to_content()) builder_.fail_promise(what, promised, found, place());
+  }
+
+  void read_face() {
+    const std::int64_t corners = scanner_.integer("the number of corners");
+    if (corners < 0) scanner_.fail("a face has a negative number of corners", kMendLine);
+    builder_.check_corner_count(corners, place());
+    corners_.clear();
+    for (std::int64_t i = 0; i < corners; ++i)
+      corners_.push_back(scanner_.integer("a vertex index"));
+    builder_.add_face(corners_, place());
+  }
+
+  TextScanner& scanner_;
+  ScanBuilder& builder_;
+  std::vector<std::int64_t> corners_;
+};
+
+/// Big-endian 32-bit numbers: the three counts, the vertices, then for each face its corners and
+/// the components of its colour, each list preceded by its length.
+class OffBinary {
+ public:
+  OffBinary(ByteSource& source, ScanBuilder& builder) : source_(source), builder_(builder) {}
+
+  void read(std::int64_t vertex_bytes) {
+    const Counts counts = read_counts(vertex_bytes);
+    begin("vertices", counts.vertices);
+    for (; index_ < counts.vertices; ++index_) {
+      const Place place = this->place();
+      const double x = next<float>();
+      const double y = next<float>();
+      const double z = next<float>();
+      builder_.add_point(x, y, z, place);
+      skip(vertex_bytes - 12);
+    }
+    begin("faces", counts.faces);
+    for (; index_ < counts.faces; ++index_) read_face();
+  }
+
+ private:
+  Place place() const { return {Place::Unit::byte, source_.position()}; }
+
+  void begin(std::string_view what, std::int64_t promised) {
+    what_ = what;
+    promised_ = promised;
+    index_ = 0;
+  }
+
+  Counts read_counts(std::int64_t vertex_bytes) {
+    const Place place = this->place();
+    begin("counts", 3);
+    const std::int64_t vertices = next<std::int32_t>();
+    const std::int64_t faces = next<std::int32_t>();
+    next<std::int32_t>();  // edges
+    if (vertices < 0 || faces < 0)
+      builder_.fail(place, "the header has a negative count", "export the scan again");
+    builder_.promise_points(vertices, vertex_bytes, place);
+    builder_.promise_faces(faces, 8, place);
+    return {.vertices = vertices, .faces = faces};
+  }
+
+  std::int64_t next_length() {
+    const Place place = this->place();
+    const std::int64_t length = next<std::int32_t>();
+    if (length < 0)
+      builder_.fail(place, "the length of a list is negative", "export the scan again");
+    return length;
+  }
+
+  void read_face() {
+    const Place place = this->place();
+    const std::int64_t corners = next_length();
+    builder_.check_corner_count(corners, place);
+    corners_.clear();
+    for (std::int64_t i = 0; i < corners; ++i) corners_.push_back(next<std::int32_t>());
+    builder_.add_face(corners_, place);
+    skip(4 * next_length());
+  }
+
+  template <typename Number>
+  Number next() {
+    if (!source_.fill(sizeof(Number))) fail_end();
+    const auto number = load<Number>(source_.ahead().data(), std::endian::big);
+    source_.consume(sizeof(Number));
+    return number;
+  }
+
+  void skip(std::int64_t bytes) {
+    if (source_.skip(bytes) < bytes) fail_end();
+  }
+
+  [[noreturn]] void fail_end() {
+    source_.skip(ByteSource::kWindowBytes);  // to the end: the rest of a number
+    builder_.fail_promise(what_, promised_, index_, place());
+  }
+
+  ByteSource& source_;
+  ScanBuilder& builder_;
+  std::string_view what_;
+  std::int64_t promised_ = 0;
+  std::int64_t index_ = 0;
+  std::vector<std::int64_t> corners_;
+};
+
+}  // namespace
+
+Scan read_off(ByteSource& source, const ScanLimits& limits) {
+  TextScanner scanner(source, {.hash_comments = true});
+  ScanBuilder builder(source, limits);
+  const OffHeader header = read_header(scanner);
+  scanner.release();
+  if (header.binary) {
+    OffBinary(source, builder).read(header.vertex_bytes);
+    return builder.finish(header.keyword + " binary");
+  }
+  OffText(scanner, builder).read();
+  return builder.finish(header.keyword);
+}
+
+}  // namespace semigeo::io

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "io/files/byte_source.hpp"
+
+namespace semigeo::io {
+
+/// Where in a file a record begins: cheap to pass along, put into words only when it is needed.
+struct Place {
+  enum class Unit { line, byte };
+  Unit unit = Unit::line;
+  std::int64_t number = 0;
+
+  std::string text(const ByteSource& source) const {
+    return unit == Unit::line ? "line " + std::to_string(number) : source.place(number);
+  }
+};
+
+}  // namespace semigeo::io

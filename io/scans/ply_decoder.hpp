@@ -1,0 +1,137 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+
+#include "io/files/binary_load.hpp"
+#include "io/files/byte_source.hpp"
+#include "io/scans/place.hpp"
+#include "io/scans/ply_header.hpp"
+#include "io/scans/scan_builder.hpp"
+#include "io/scans/text_scanner.hpp"
+
+namespace semigeo::io {
+
+/// What messages call the records of an element.
+inline std::string plural(const PlyElement& element) {
+  if (element.name == "vertex") return "vertices";
+  if (element.name == "face") return "faces";
+  return "records of element '" + element.name + "'";
+}
+
+/// The values of an ascii PLY, record by record: one line each.
+class PlyAsciiDecoder {
+ public:
+  PlyAsciiDecoder(ByteSource& source, const PlyHeader& header, const ScanBuilder& builder)
+      : scanner_(source, {}, header.lines + 1), builder_(builder) {}
+
+  void begin_record(const PlyElement& element, std::int64_t index) {
+    if (!scanner_.skip_to_content())
+      builder_.fail_promise(plural(element), element.count, index, place());
+  }
+  void end_record() {
+    if (!scanner_.at_line_end())
+      scanner_.fail("the line has more values than the header declares",
+                    "correct the line or export the scan again");
+  }
+  Place place() const { return {Place::Unit::line, scanner_.line()}; }
+
+  double scalar(const PlyProperty& property) { return scanner_.number(property.name); }
+  std::int64_t length(const PlyProperty& property) {
+    const std::int64_t length = scanner_.integer(property.name);
+    if (length < 0) scanner_.fail("the length of list " + property.name + " is negative");
+    return length;
+  }
+  template <typename Receiver>
+  void items(const PlyProperty& property, std::int64_t length, Receiver receive) {
+    for (std::int64_t i = 0; i < length; ++i) receive(scanner_.integer(property.name));
+  }
+  void skip(const PlyProperty& property) {
+    const std::int64_t words = property.count_type ? length(property) : 1;
+    for (std::int64_t i = 0; i < words; ++i)
+      if (scanner_.word().empty())
+        scanner_.fail("the line ends where " + property.name + " should be",
+                      "correct the line or export the scan again");
+  }
+
+ private:
+  TextScanner scanner_;
+  const ScanBuilder& builder_;
+};
+
+/// The values of a binary PLY of either byte order.
+class PlyBinaryDecoder {
+ public:
+  PlyBinaryDecoder(ByteSource& source, const PlyHeader& header, const ScanBuilder& builder)
+      : source_(source),
+        builder_(builder),
+        order_(header.encoding == PlyHeader::Encoding::big_endian ? std::endian::big
+                                                                  : std::endian::little) {}
+
+  void begin_record(const PlyElement& element, std::int64_t index) {
+    element_ = &element;
+    index_ = index;
+    start_ = source_.position();
+  }
+  void end_record() {}
+  Place place() const { return {Place::Unit::byte, start_}; }
+
+  double scalar(const PlyProperty& property) { return next<double>(property.type); }
+  std::int64_t length(const PlyProperty& property) {
+    const auto length = next<std::int64_t>(*property.count_type);
+    if (length < 0) builder_.fail(place(), "the length of list " + property.name + " is negative");
+    return length;
+  }
+  template <typename Receiver>
+  void items(const PlyProperty& property, std::int64_t length, Receiver receive) {
+    for (std::int64_t i = 0; i < length; ++i) receive(next<std::int64_t>(property.type));
+  }
+  void skip(const PlyProperty& property) {
+    const std::int64_t count = property.count_type ? length(property) : 1;
+    const std::int64_t bytes = count * ply_type_size(property.type);
+    if (source_.skip(bytes) < bytes) fail_end();
+  }
+
+ private:
+  template <typename Number>
+  Number next(PlyType type) {
+    const auto size = static_cast<std::size_t>(ply_type_size(type));
+    if (!source_.fill(size)) fail_end();
+    const char* const from = source_.ahead().data();
+    source_.consume(size);
+    switch (type) {
+      case PlyType::int8:
+        return load<std::int8_t>(from, order_);
+      case PlyType::uint8:
+        return load<std::uint8_t>(from, order_);
+      case PlyType::int16:
+        return load<std::int16_t>(from, order_);
+      case PlyType::uint16:
+        return load<std::uint16_t>(from, order_);
+      case PlyType::int32:
+        return load<std::int32_t>(from, order_);
+      case PlyType::uint32:
+        return load<std::uint32_t>(from, order_);
+      case PlyType::float32:
+        return static_cast<Number>(load<float>(from, order_));
+      case PlyType::float64:
+        return static_cast<Number>(load<double>(from, order_));
+    }
+    return 0;
+  }
+  [[noreturn]] void fail_end() {
+    source_.skip(ByteSource::kWindowBytes);  // to the end: the rest of a number
+    builder_.fail_promise(plural(*element_), element_->count, index_,
+                          {Place::Unit::byte, source_.position()});
+  }
+
+  ByteSource& source_;
+  const ScanBuilder& builder_;
+  std::endian order_;
+  const PlyElement* element_ = nullptr;
+  std::int64_t index_ = 0;
+  std::int64_t start_ = 0;
+};
+
+}  // namespace semigeo::io

@@ -1,0 +1,199 @@
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "io/scans/ply_decoder.hpp"
+#include "io/scans/ply_header.hpp"
+#include "io/scans/scan_builder.hpp"
+#include "io/scans/scan_formats.hpp"
+
+namespace semigeo::io {
+namespace {
+
+constexpr const char* kBadHeader = "correct the header or export the scan again";
+
+Place declaration(const PlyElement& element) {
+  return {Place::Unit::line, element.line};
+}
+
+/// For each property of `vertex` the axis it is the coordinate of, or -1.
+std::vector<int> find_axes(const PlyElement& vertex, const ScanBuilder& builder) {
+  std::vector<int> axes(vertex.properties.size(), -1);
+  constexpr std::array<std::string_view, 3> kNames = {"x", "y", "z"};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto found =
+        std::find_if(vertex.properties.begin(), vertex.properties.end(),
+                     [&](const PlyProperty& p) { return p.name == kNames[axis] && !p.count_type; });
+    if (found == vertex.properties.end())
+      builder.fail(declaration(vertex),
+                   "its vertices have no property " + std::string(kNames[axis]), kBadHeader);
+    axes[found - vertex.properties.begin()] = axis;
+  }
+  return axes;
+}
+
+/// The list of `element` that holds its vertex indices.
+const PlyProperty& find_index_list(const PlyElement& element, const ScanBuilder& builder) {
+  for (const PlyProperty& property : element.properties) {
+    if (property.name != "vertex_indices" && property.name != "vertex_index") continue;
+    if (property.count_type && is_integer(property.type)) return property;
+    builder.fail(declaration(element), property.name + " is not a list of integers", kBadHeader);
+  }
+  builder.fail(declaration(element),
+               "element " + element.name + " has no list vertex_indices or vertex_index",
+               kBadHeader);
+}
+
+/// Joins each corner of a triangle strip with the two before it, every second time the other way
+/// round; -1 starts a new strip. Repeated corners, which only steer the strip, make no face.
+class TriangleStrip {
+ public:
+  explicit TriangleStrip(ScanBuilder& builder) : builder_(builder) {}
+  void add(std::int64_t corner, Place place) {
+    if (corner == -1) {
+      length_ = 0;
+      return;
+    }
+    if (++length_ >= 3 && a_ != b_ && b_ != corner && a_ != corner) {
+      const bool turned = length_ % 2 == 0;
+      builder_.add_face(std::array{turned ? b_ : a_, turned ? a_ : b_, corner}, place);
+    }
+    a_ = b_;
+    b_ = corner;
+  }
+
+ private:
+  ScanBuilder& builder_;
+  std::int64_t length_ = 0, a_ = 0, b_ = 0;
+};
+
+/// Reads the elements in the order of the file.
+template <typename Decoder>
+class PlyBody {
+ public:
+  PlyBody(ByteSource& source, const PlyHeader& header, ScanBuilder& builder)
+      : source_(source), header_(header), builder_(builder), decoder_(source, header, builder) {}
+
+  void read() {
+    for (const PlyElement& element : header_.elements) {
+      if (element.name == "vertex") {
+        read_vertices(element);
+      } else if (element.name == "face" && element.count > 0) {
+        read_faces(element);
+      } else if (element.name == "tristrips" && element.count > 0) {
+        read_strips(element);
+      } else {
+        skip(element);
+      }
+    }
+  }
+
+ private:
+  void read_vertices(const PlyElement& element) {
+    const std::vector<int> axes = find_axes(element, builder_);
+    std::array<double, 3> point{};
+    for (std::int64_t i = 0; i < element.count; ++i) {
+      decoder_.begin_record(element, i);
+      for (std::size_t p = 0; p < axes.size(); ++p) {
+        if (axes[p] < 0) {
+          decoder_.skip(element.properties[p]);
+        } else {
+          point[axes[p]] = decoder_.scalar(element.properties[p]);
+        }
+      }
+      builder_.add_point(point[0], point[1], point[2], decoder_.place());
+      decoder_.end_record();
+    }
+  }
+
+  /// Calls `use(property, length)` for the index list of every record, in place of reading it.
+  template <typename Use>
+  void read_lists(const PlyElement& element, Use use) {
+    const PlyProperty& list = find_index_list(element, builder_);
+    for (std::int64_t i = 0; i < element.count; ++i) {
+      decoder_.begin_record(element, i);
+      for (const PlyProperty& property : element.properties) {
+        if (&property == &list) {
+          use(list, decoder_.length(list));
+        } else {
+          decoder_.skip(property);
+        }
+      }
+      decoder_.end_record();
+    }
+  }
+
+  void read_faces(const PlyElement& element) {
+    std::vector<std::int64_t> corners;
+    read_lists(element, [&](const PlyProperty& list, std::int64_t length) {
+      builder_.check_corner_count(length, decoder_.place());
+      corners.clear();
+      decoder_.items(list, length, [&](std::int64_t corner) { corners.push_back(corner); });
+      builder_.add_face(corners, decoder_.place());
+    });
+  }
+
+  void read_strips(const PlyElement& element) {
+    read_lists(element, [&](const PlyProperty& list, std::int64_t length) {
+      TriangleStrip strip(builder_);
+      decoder_.items(list, length,
+                     [&](std::int64_t corner) { strip.add(corner, decoder_.place()); });
+    });
+  }
+
+  void skip(const PlyElement& element) {
+    if (element.properties.empty()) return;  // its records have no bytes, however many there are
+    for (std::int64_t i = 0; i < element.count; ++i) {
+      decoder_.begin_record(element, i);
+      for (const PlyProperty& property : element.properties) decoder_.skip(property);
+      decoder_.end_record();
+    }
+  }
+
+  ByteSource& source_;
+  const PlyHeader& header_;
+  ScanBuilder& builder_;
+  Decoder decoder_;
+};
+
+/// Tells the builder what the header promises; it must know before the first element is read,
+/// because faces may come before vertices.
+void announce(const PlyHeader& header, ScanBuilder& builder) {
+  const bool ascii = header.encoding == PlyHeader::Encoding::ascii;
+  bool has_vertices = false;
+  for (const PlyElement& element : header.elements) {
+    const std::int64_t bytes = std::max<std::int64_t>(element.least_bytes(ascii), 1);
+    if (element.name == "vertex") {
+      if (has_vertices)
+        builder.fail(declaration(element), "element vertex is declared twice", kBadHeader);
+      has_vertices = true;
+      find_axes(element, builder);
+      builder.promise_points(element.count, bytes, declaration(element));
+    } else if (element.name == "face") {
+      builder.promise_faces(element.count, bytes, declaration(element));
+    }
+  }
+  if (!has_vertices)
+    builder.fail({Place::Unit::line, header.lines}, "the header declares no element vertex",
+                 kBadHeader);
+}
+
+}  // namespace
+
+Scan read_ply(ByteSource& source, const ScanLimits& limits) {
+  const PlyHeader header = read_ply_header(source);
+  ScanBuilder builder(source, limits);
+  announce(header, builder);
+  if (header.encoding == PlyHeader::Encoding::ascii) {
+    PlyBody<PlyAsciiDecoder>(source, header, builder).read();
+    return builder.finish("PLY ascii");
+  }
+  PlyBody<PlyBinaryDecoder>(source, header, builder).read();
+  return builder.finish(header.encoding == PlyHeader::Encoding::big_endian
+                            ? "PLY binary big endian"
+                            : "PLY binary little endian");
+}
+
+}  // namespace semigeo::io

@@ -1,0 +1,147 @@
+#include "io/scans/scan_builder.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "io/files/error.hpp"
+
+namespace semigeo::io {
+namespace {
+
+constexpr std::int64_t kMaxIndexable = std::numeric_limits<std::int32_t>::max() - 1;
+constexpr const char* kExportAgain = "copy the file again from its source or export it again";
+
+}  // namespace
+
+ScanBuilder::ScanBuilder(const ByteSource& source, const ScanLimits& limits)
+    : source_(source), limits_(limits) {
+  limits_.max_vertices = std::min(limits_.max_vertices, kMaxIndexable);
+  index_limit_ = limits_.max_vertices;
+}
+
+void ScanBuilder::promise_points(std::int64_t count, std::int64_t bytes_each, Place place) {
+  index_limit_ = count;
+  index_limit_known_ = true;
+  const std::optional<std::int64_t> left = source_.bytes_left();
+  const bool possible = !left || count <= *left / bytes_each;
+  if (possible && count > limits_.max_vertices) fail_limit("vertices", limits_.max_vertices, place);
+  if (left && possible) scan_.mesh.points.reserve(static_cast<std::size_t>(count));
+}
+
+void ScanBuilder::promise_faces(std::int64_t count, std::int64_t bytes_each, Place place) {
+  const std::optional<std::int64_t> left = source_.bytes_left();
+  const bool possible = !left || count <= *left / bytes_each;
+  if (possible && count > limits_.max_triangles)
+    fail_limit("triangles", limits_.max_triangles, place);
+  if (left && possible) scan_.mesh.triangles.reserve(static_cast<std::size_t>(count));
+}
+
+void ScanBuilder::add_face(std::span<const std::int64_t> corners, Place place) {
+  for (const std::int64_t corner : corners) check_corner(corner, place);
+  if (corners.size() < 3) {
+    ++scan_.faces_skipped;
+    return;
+  }
+  const auto count = static_cast<std::int64_t>(corners.size());
+  triangle_count_ += count - 2;
+  if (triangle_count_ > limits_.max_triangles)
+    fail_limit("triangles", limits_.max_triangles, place);
+  if (count == 3) {
+    scan_.mesh.triangles.push_back({static_cast<std::int32_t>(corners[0]),
+                                    static_cast<std::int32_t>(corners[1]),
+                                    static_cast<std::int32_t>(corners[2])});
+    return;
+  }
+  ++scan_.polygons_triangulated;
+  if (*std::max_element(corners.begin(), corners.end()) < point_count()) {
+    add_polygon(corners);
+  } else {
+    waiting_.push_back(static_cast<std::int32_t>(count));
+    for (const std::int64_t corner : corners) waiting_.push_back(static_cast<std::int32_t>(corner));
+  }
+}
+
+void ScanBuilder::add_polygon(std::span<const std::int64_t> corners) {
+  polygon_.clear();
+  for (const std::int64_t corner : corners) polygon_.push_back(scan_.mesh.points[corner]);
+  for (const auto& [a, b, c] : triangulator_.triangulate(polygon_))
+    scan_.mesh.triangles.push_back({static_cast<std::int32_t>(corners[a]),
+                                    static_cast<std::int32_t>(corners[b]),
+                                    static_cast<std::int32_t>(corners[c])});
+}
+
+Scan ScanBuilder::finish(std::string format) {
+  if (point_count() == 0)
+    throw Error(source_.path(), "", "it holds no vertices", "export a scan with a surface");
+  if (largest_ahead_ >= point_count()) {
+    index_limit_ = point_count();
+    index_limit_known_ = true;
+    fail_index(largest_ahead_, largest_ahead_place_);
+  }
+  if (triangle_count_ == 0) fail_without_faces();
+  std::vector<std::int64_t> corners;
+  for (std::size_t i = 0; i < waiting_.size(); i += corners.size() + 1) {
+    const auto first = waiting_.begin() + static_cast<std::ptrdiff_t>(i) + 1;
+    corners.assign(first, first + waiting_[i]);
+    add_polygon(corners);
+  }
+  waiting_ = {};
+  scan_.format = std::move(format);
+  return std::move(scan_);
+}
+
+void ScanBuilder::fail(Place place, const std::string& problem, const std::string& remedy) const {
+  throw Error(source_.path(), place.text(source_), problem, remedy);
+}
+
+void ScanBuilder::fail_promise(std::string_view what, std::int64_t promised, std::int64_t found,
+                               Place end) const {
+  fail(end,
+       "the header promises " + std::to_string(promised) + " " + std::string(what) +
+           ", but the file ends after " + std::to_string(found),
+       kExportAgain);
+}
+
+void ScanBuilder::fail_coordinate(double x, double y, double z, Place place) const {
+  for (const auto& [name, value] : {std::pair{"x", x}, {"y", y}, {"z", z}}) {
+    if (!std::isfinite(value))
+      fail(place, std::string("the ") + name + " coordinate is not a finite number",
+           "remove or repair this vertex");
+    if (std::abs(value) > limits_.max_coordinate)
+      fail(place, std::string("the ") + name + " coordinate is implausibly large", kExportAgain);
+  }
+  fail(place, "a coordinate is out of range", kExportAgain);
+}
+
+void ScanBuilder::fail_corner_count(Place place) const {
+  fail(place, "a face has more than " + std::to_string(kMaxCorners) + " corners", kExportAgain);
+}
+
+void ScanBuilder::fail_index(std::int64_t corner, Place place) const {
+  const std::string face = "a face refers to vertex " + std::to_string(corner + index_base_);
+  const std::string limit = std::to_string(index_limit_) + " vertices";
+  if (index_limit_known_)
+    fail(place,
+         face + ", but there are only " + limit + ", numbered from " + std::to_string(index_base_),
+         kExportAgain);
+  fail(place, face + ", more than the limit of " + limit, kExportAgain);
+}
+
+void ScanBuilder::fail_limit(std::string_view what, std::int64_t limit, Place place) const {
+  fail(place, "the scan has more than " + std::to_string(limit) + " " + std::string(what),
+       "cut it into parts or reduce it first");
+}
+
+void ScanBuilder::fail_without_faces() const {
+  const std::string points = "it has " + std::to_string(point_count()) + " points but ";
+  if (scan_.faces_skipped > 0)
+    throw Error(
+        source_.path(), "",
+        points + "none of its " + std::to_string(scan_.faces_skipped) + " faces has three corners",
+        "export it with triangles");
+  throw Error(source_.path(), "", points + "no faces",
+              "semigeo needs a surface: mesh it first (for example by Poisson reconstruction)");
+}
+
+}  // namespace semigeo::io

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/files/byte_source.hpp"
+#include "io/scans/place.hpp"
+#include "io/scans/polygon_triangulator.hpp"
+#include "io/scans/scan_reader.hpp"
+
+namespace semigeo::io {
+
+/// Collects what a reader finds into a `Scan`: checks every coordinate and index, cuts polygons
+/// into triangles as soon as their corners are known, and enforces the limits. All its errors
+/// name the source and the place that was passed in.
+class ScanBuilder {
+ public:
+  /// Corners that one face may have.
+  static constexpr std::int64_t kMaxCorners = 65'535;
+
+  ScanBuilder(const ByteSource& source, const ScanLimits& limits);
+
+  /// What counts in messages as the first vertex: 1 for OBJ, else 0.
+  void set_index_base(std::int64_t base) { index_base_ = base; }
+  /// The header promises so many vertices, each at least `bytes_each` long. They are the range of
+  /// valid indices from now on, and memory is reserved if the file can hold them.
+  void promise_points(std::int64_t count, std::int64_t bytes_each, Place place);
+  /// The same for faces.
+  void promise_faces(std::int64_t count, std::int64_t bytes_each, Place place);
+  /// The error for a promise that the file does not keep: `found` of `promised` `what`.
+  [[noreturn]] void fail_promise(std::string_view what, std::int64_t promised, std::int64_t found,
+                                 Place end) const;
+  [[noreturn]] void fail(Place place, const std::string& problem,
+                         const std::string& remedy = {}) const;
+
+  std::int64_t point_count() const { return static_cast<std::int64_t>(scan_.mesh.points.size()); }
+
+  void add_point(double x, double y, double z, Place place) {
+    const double limit = limits_.max_coordinate;  // the comparisons are false for NaN
+    if (!(std::abs(x) <= limit && std::abs(y) <= limit && std::abs(z) <= limit))
+      fail_coordinate(x, y, z, place);
+    if (point_count() >= limits_.max_vertices) fail_limit("vertices", limits_.max_vertices, place);
+    scan_.mesh.points.emplace_back(x, y, z);
+  }
+
+  /// Must be asked before a face's corners are collected.
+  void check_corner_count(std::int64_t count, Place place) const {
+    if (count > kMaxCorners) fail_corner_count(place);
+  }
+  /// A face of up to kMaxCorners corners, zero-based. Corners may come later in the file, unless
+  /// promise_points was called.
+  void add_face(std::span<const std::int64_t> corners, Place place);
+
+  /// Does what had to wait for the last vertex and returns the scan.
+  Scan finish(std::string format);
+
+ private:
+  void check_corner(std::int64_t corner, Place place) {
+    if (static_cast<std::uint64_t>(corner) >= static_cast<std::uint64_t>(index_limit_))
+      fail_index(corner, place);
+    if (corner >= point_count() && corner > largest_ahead_) {
+      largest_ahead_ = corner;
+      largest_ahead_place_ = place;
+    }
+  }
+  void add_polygon(std::span<const std::int64_t> corners);
+  [[noreturn]] void fail_coordinate(double x, double y, double z, Place place) const;
+  [[noreturn]] void fail_corner_count(Place place) const;
+  [[noreturn]] void fail_index(std::int64_t corner, Place place) const;
+  [[noreturn]] void fail_limit(std::string_view what, std::int64_t limit, Place place) const;
+  [[noreturn]] void fail_without_faces() const;
+
+  const ByteSource& source_;
+  ScanLimits limits_;
+  Scan scan_;
+  std::int64_t index_base_ = 0;
+  std::int64_t index_limit_ = 0;
+  bool index_limit_known_ = false;   // false: it is only the most that could be held
+  std::int64_t triangle_count_ = 0;  // with those of the polygons that wait
+  std::int64_t largest_ahead_ = -1;  // largest index met before its vertex, and where first
+  Place largest_ahead_place_;
+  std::vector<std::int32_t> waiting_;  // polygons met before their vertices: size, then corners
+  PolygonTriangulator triangulator_;
+  std::vector<Eigen::Vector3d> polygon_;
+};
+
+}  // namespace semigeo::io

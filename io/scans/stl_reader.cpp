@@ -1,0 +1,174 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <string>
+#include <string_view>
+
+#include "io/files/binary_load.hpp"
+#include "io/files/error.hpp"
+#include "io/scans/scan_builder.hpp"
+#include "io/scans/scan_formats.hpp"
+#include "io/scans/text_scanner.hpp"
+
+namespace semigeo::io {
+namespace {
+
+constexpr std::int64_t kHeaderBytes = 80;
+constexpr std::int64_t kPreambleBytes = kHeaderBytes + 4;
+constexpr std::int64_t kRecordBytes = 50;
+constexpr const char* kMendLine = "correct the line or export the scan again";
+
+char lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+bool is_word(std::string_view text, std::string_view lower_case) {
+  return std::equal(text.begin(), text.end(), lower_case.begin(), lower_case.end(),
+                    [](char a, char b) { return lower(a) == b; });
+}
+
+/// Whether the file is text. The keyword alone does not tell, because the free header of a binary
+/// file may begin with it, but of binary data enough to hold a triangle is never all text: it
+/// holds the four bytes of the count and numbers around zero.
+bool is_text(ByteSource& source) {
+  source.fill(kPreambleBytes + kRecordBytes);
+  std::string_view start = source.ahead().substr(0, 1024);
+  const bool controls = std::any_of(start.begin(), start.end(), [](char c) {
+    return static_cast<unsigned char>(c) < ' ' && (c < '\t' || c > '\r');
+  });
+  if (controls) return false;
+  if (start.starts_with("\xef\xbb\xbf")) start.remove_prefix(3);
+  start.remove_prefix(std::min(start.find_first_not_of(" \t\r\n"), start.size()));
+  return is_word(start.substr(0, 5), "solid") || is_word(start.substr(0, 5), "facet");
+}
+
+std::int64_t promised_triangles(const ByteSource& source) {
+  return load<std::uint32_t>(source.ahead().data() + kHeaderBytes, std::endian::little);
+}
+
+/// Whether a plain file has exactly the size that its count of triangles asks for.
+bool has_binary_size(ByteSource& source) {
+  if (source.compressed() || !source.fill(kPreambleBytes)) return false;
+  return source.bytes_left() == kPreambleBytes + kRecordBytes * promised_triangles(source);
+}
+
+void add_triangle(ScanBuilder& builder, Place place) {
+  const std::int64_t end = builder.point_count();
+  builder.add_face(std::array{end - 3, end - 2, end - 1}, place);
+}
+
+class StlText {
+ public:
+  StlText(ByteSource& source, ScanBuilder& builder) : scanner_(source), builder_(builder) {}
+
+  void read() {
+    while (scanner_.skip_to_content()) {
+      read_line();
+      if (!scanner_.next_line()) break;
+    }
+    if (in_facet_ || in_solid_)
+      scanner_.fail(std::string("the file ends before its end") + (in_facet_ ? "facet" : "solid"),
+                    "copy the file again from its source");
+  }
+
+ private:
+  void read_line() {
+    const std::string_view keyword = scanner_.word();
+    if (is_word(keyword, "vertex")) {
+      read_vertex();
+    } else if (is_word(keyword, "facet")) {
+      expect(!in_facet_);
+      in_facet_ = true;
+    } else if (is_word(keyword, "outer")) {
+      expect(in_facet_ && !in_loop_);
+      in_loop_ = true;
+      corners_ = 0;
+    } else if (is_word(keyword, "endloop")) {
+      expect(in_loop_);
+      in_loop_ = false;
+      if (corners_ != 3)
+        scanner_.fail("a facet has " + std::to_string(corners_) + " vertices in place of three",
+                      kMendLine);
+      add_triangle(builder_, place());
+    } else if (is_word(keyword, "endfacet")) {
+      expect(in_facet_ && !in_loop_);
+      in_facet_ = false;
+    } else if (is_word(keyword, "solid")) {
+      expect(!in_facet_ && !in_solid_);
+      in_solid_ = true;
+    } else {
+      expect(is_word(keyword, "endsolid") && !in_facet_);
+      in_solid_ = false;
+    }
+  }
+
+  void read_vertex() {
+    expect(in_loop_);
+    const double x = scanner_.number("the x coordinate");
+    const double y = scanner_.number("the y coordinate");
+    const double z = scanner_.number("the z coordinate");
+    builder_.add_point(x, y, z, place());
+    ++corners_;
+  }
+
+  Place place() const { return {Place::Unit::line, scanner_.line()}; }
+
+  void expect(bool condition) const {
+    if (condition) return;
+    const char* expected = "solid or facet";
+    if (in_solid_) expected = "facet or endsolid";
+    if (in_facet_) expected = "outer loop or endfacet";
+    if (in_loop_) expected = "vertex or endloop";
+    scanner_.fail(std::string("the line does not begin with ") + expected, kMendLine);
+  }
+
+  TextScanner scanner_;
+  ScanBuilder& builder_;
+  std::int64_t corners_ = 0;
+  bool in_solid_ = false, in_facet_ = false, in_loop_ = false;
+};
+
+void read_binary(ByteSource& source, ScanBuilder& builder) {
+  const Place count_place{Place::Unit::byte, kHeaderBytes};
+  if (!source.fill(kPreambleBytes))
+    throw Error(source.path(), "",
+                "this is no STL file: it is neither text that begins with 'solid' nor long enough "
+                "to be binary",
+                "copy it again from its source or correct its extension");
+  const std::int64_t count = promised_triangles(source);
+  source.consume(kPreambleBytes);
+  // Asked before reading, because a file of another kind would fail with a stranger message.
+  const std::int64_t left = source.bytes_left().value_or(kRecordBytes * count);
+  if (left < kRecordBytes * count)
+    builder.fail_promise("triangles", count, left / kRecordBytes,
+                         {Place::Unit::byte, source.position() + left});
+  builder.promise_faces(count, kRecordBytes, count_place);
+  builder.promise_points(3 * count, kRecordBytes / 3, count_place);
+  for (std::int64_t i = 0; i < count; ++i) {
+    if (!source.fill(kRecordBytes)) {
+      source.skip(kRecordBytes);
+      builder.fail_promise("triangles", count, i, {Place::Unit::byte, source.position()});
+    }
+    const Place place{Place::Unit::byte, source.position()};
+    const char* const corners = source.ahead().data() + 12;  // behind the normal
+    std::array<float, 9> xyz;
+    for (int k = 0; k < 9; ++k) xyz[k] = load<float>(corners + 4 * k, std::endian::little);
+    for (int k = 0; k < 9; k += 3) builder.add_point(xyz[k], xyz[k + 1], xyz[k + 2], place);
+    add_triangle(builder, place);
+    source.consume(kRecordBytes);
+  }
+}
+
+}  // namespace
+
+Scan read_stl(ByteSource& source, const ScanLimits& limits) {
+  ScanBuilder builder(source, limits);
+  if (!has_binary_size(source) && is_text(source)) {
+    StlText(source, builder).read();
+    return builder.finish("STL ascii");
+  }
+  read_binary(source, builder);
+  return builder.finish("STL binary");
+}
+
+}  // namespace semigeo::io

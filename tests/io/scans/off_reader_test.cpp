@@ -1,0 +1,102 @@
+#include "tests/io/scans/scan_files.hpp"
+
+namespace semigeo::io {
+namespace {
+
+using OffReader = ScanFileTest;
+
+const std::string kBody = "0 0 0\n1 0 0\n0 1 0.5\n3 0 1 2\n";
+
+TEST_F(OffReader, ReadsEveryHeader) {
+  for (const std::string start :
+       {"OFF\n3 1 0\n", "OFF 3 1 3\n", "OFF\n3 1\n", "3 1 0\n",
+        "# comment\nOFF # comment\n\n# x\n3 1 0 # n\n\n", "\xef\xbb\xbfOFF\r\n3 1 0\r\n"}) {
+    const Scan scan = read("a.off", start + kBody);
+    EXPECT_EQ(scan.format, "OFF");
+    EXPECT_EQ(point(scan, 2), Eigen::Vector3d(0, 1, 0.5));
+    EXPECT_EQ(scan.mesh.triangles, (Triangles{{0, 1, 2}}));
+  }
+}
+
+TEST_F(OffReader, IgnoresWhatThePrefixesAdd) {
+  for (const std::string keyword : {"COFF", "NOFF", "CNOFF", "NCOFF", "STOFF", "STCNOFF", "OFF"}) {
+    const Scan scan = read("a.off", keyword +
+                                        "\n3 1 0\n0 0 0 9 9 9\n1 0 0 0.5 0.5\n0 1 0 1 1 1 0\n"
+                                        "3 0 1 2 255 0 0 # red\n");
+    EXPECT_EQ(scan.format, keyword);
+    EXPECT_EQ(scan.mesh.triangles, (Triangles{{0, 1, 2}}));
+  }
+}
+
+std::string binary(const std::string& keyword, int extra_floats) {
+  const auto put = [](auto value) { return bytes_of(value, std::endian::big); };
+  std::string file = keyword + " BINARY\n" + put(4) + put(2) + put(0);
+  for (int i = 0; i < 4; ++i) {
+    file += put(static_cast<float>(i)) + put(static_cast<float>(i * i)) + put(0.5f);
+    for (int k = 0; k < extra_floats; ++k) file += put(9.0f);
+  }
+  file += put(3) + put(0) + put(1) + put(2) + put(4) + put(1.f) + put(1.f) + put(1.f) + put(1.f);
+  file += put(4) + put(0) + put(1) + put(2) + put(3) + put(0);
+  return file;
+}
+
+TEST_F(OffReader, ReadsBinary) {
+  for (const auto& [keyword, extra] :
+       {std::pair{"OFF", 0}, {"NOFF", 3}, {"COFF", 4}, {"CNOFF", 7}, {"STOFF", 2}}) {
+    const Scan scan = read("a.off", binary(keyword, extra));
+    EXPECT_EQ(scan.format, keyword + std::string(" binary"));
+    EXPECT_EQ(point(scan, 3), Eigen::Vector3d(3, 9, 0.5));
+    EXPECT_EQ(scan.mesh.triangles.size(), 3u);
+    EXPECT_EQ(scan.mesh.triangles[0], (std::array<std::int32_t, 3>{0, 1, 2}));
+  }
+}
+
+TEST_F(OffReader, RefusesCutBinaryFiles) {
+  const std::string whole = binary("OFF", 0);
+  for (std::size_t size = 12; size < whole.size(); ++size)
+    expect_parts(error("a.off", whole.substr(0, size)),
+                 {size == 12 ? "" : "byte " + std::to_string(size)});
+  expect_parts(error("a.off", whole.substr(0, 40)), {"promises 4 vertices", "ends after 1"});
+  std::string negative = whole;
+  negative[11] = '\xff';
+  expect_parts(error("a.off", negative), {"byte 11", "negative count"});
+}
+
+TEST_F(OffReader, RefusesOtherDimensionsAndOtherFiles) {
+  for (const std::string keyword : {"4OFF", "nOFF", "C4OFF", "4nOFF"})
+    expect_parts(error("a.off", keyword + "\n3 1 0\n"), {"line 1", "three dimensions"});
+  expect_parts(error("a.off", "ply\n"), {"line 1", "not an OFF file"});
+  expect_parts(error("a.off", "SOFF\n"), {"line 1", "not an OFF file"});
+  expect_parts(error("a.off", "# only this"), {"nothing but comments"});
+}
+
+TEST_F(OffReader, RefusesBadValuesWithTheirLine) {
+  expect_parts(error("a.off", "OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n"),
+               {"line 4", "the z coordinate"});
+  expect_parts(error("a.off", "OFF\n3 1 0\n0 0 0\n1 inf 0\n0 1 0\n3 0 1 2\n"),
+               {"line 4", "y coordinate"});
+  expect_parts(error("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
+               {"line 6", "vertex 3"});
+  expect_parts(error("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n"),
+               {"line 6", "vertex index"});
+  expect_parts(error("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n-1\n"), {"line 6", "negative"});
+  expect_parts(error("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n99999 1\n"), {"line 6", "65535"});
+  expect_parts(error("a.off", "OFF\n3 x 0\n"), {"line 2", "number of faces, found 'x'"});
+  expect_parts(error("a.off", "OFF\n-3 1 0\n"), {"line 2", "negative count"});
+  expect_parts(error("a.off", "OFF\n"), {"the file ends where the number of vertices"});
+}
+
+TEST_F(OffReader, RefusesAPromiseThatTheFileDoesNotKeep) {
+  expect_parts(error("a.off", "OFF\n1000000000000 1 0\n0 0 0\n1 0 0\n"),
+               {"promises 1000000000000 vertices", "ends after 2"});
+  expect_parts(error("a.off", "OFF\n3 1000000000000 0\n" + kBody),
+               {"promises 1000000000000 faces", "ends after 1"});
+}
+
+TEST_F(OffReader, RefusesScansWithoutASurface) {
+  expect_parts(error("a.off", "OFF\n2 0 0\n0 0 0\n1 0 0\n"), {"2 points but no faces"});
+  expect_parts(error("a.off", "OFF\n0 0 0\n"), {"holds no vertices"});
+}
+
+}  // namespace
+}  // namespace semigeo::io
