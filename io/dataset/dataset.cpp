@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "io/dataset/vtkhdf.hpp"
+#include "io/files/error.hpp"
 #include "io/hdf5/array_reader.hpp"
 #include "io/hdf5/complete_file.hpp"
 #include "io/hdf5/content_digest.hpp"
-#include "io/files/error.hpp"
-#include "io/dataset/vtkhdf.hpp"
 
 namespace semigeo::io {
 namespace {

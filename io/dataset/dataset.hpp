@@ -8,8 +8,8 @@
 
 #include "io/dataset/dataset_format.hpp"
 #include "io/dataset/feature_tables.hpp"
-#include "io/hdf5/hdf5.hpp"
 #include "io/dataset/selection.hpp"
+#include "io/hdf5/hdf5.hpp"
 
 namespace semigeo::io {
 

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "io/dataset/dataset.hpp"
-#include "io/files/error.hpp"
 #include "io/dataset/xdmf.hpp"
+#include "io/files/error.hpp"
 
 namespace semigeo::io {
 namespace {

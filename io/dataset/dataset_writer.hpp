@@ -4,12 +4,12 @@
 #include <optional>
 #include <vector>
 
-#include "io/files/atomic_file.hpp"
-#include "io/hdf5/content_digest.hpp"
 #include "io/dataset/dataset_format.hpp"
 #include "io/dataset/feature_tables.hpp"
 #include "io/dataset/selection.hpp"
 #include "io/dataset/vtkhdf.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/hdf5/content_digest.hpp"
 
 namespace semigeo::io {
 
@@ -43,8 +43,8 @@ struct EncodedFields {
 };
 
 /// Writes one dataset (io/DATASET.md), which appears under its final name whole and verified or
-/// not at all. The same calls give the same bytes. Encode with io/files/chunk_codec.hpp, on any number of
-/// threads; call the writer from one thread at a time.
+/// not at all. The same calls give the same bytes. Encode with io/files/chunk_codec.hpp, on any
+/// number of threads; call the writer from one thread at a time.
 ///
 /// Throws Error naming the final path when the disk refuses, std::invalid_argument when arrays do
 /// not fit each other. After either the writer can only be destroyed, which removes what it wrote.

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "io/hdf5/content_digest.hpp"
 #include "io/dataset/dataset_format.hpp"
+#include "io/hdf5/content_digest.hpp"
 
 namespace semigeo::io {
 

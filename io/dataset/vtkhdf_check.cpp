@@ -2,8 +2,8 @@
 #include <cstring>
 #include <numeric>
 
-#include "io/hdf5/array_reader.hpp"
 #include "io/dataset/vtkhdf.hpp"
+#include "io/hdf5/array_reader.hpp"
 
 namespace semigeo::io {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
-#include "io/scans/decimal.hpp"
 #include "io/files/error.hpp"
+#include "io/scans/decimal.hpp"
 
 namespace semigeo::io {
 namespace {

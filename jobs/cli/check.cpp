@@ -2,10 +2,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "jobs/archive/verification.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/datasets.hpp"
 #include "jobs/cli/json_output.hpp"
-#include "jobs/verification.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {

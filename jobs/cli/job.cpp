@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "jobs/cli/command.hpp"
-#include "jobs/task.hpp"
-#include "jobs/worker.hpp"
+#include "jobs/run/worker.hpp"
+#include "jobs/slurm/task.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {

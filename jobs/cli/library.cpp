@@ -8,12 +8,12 @@
 
 #include "io/files/error.hpp"
 #include "io/library/hash_library.hpp"
+#include "jobs/archive/verification.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/datasets.hpp"
 #include "jobs/cli/json_output.hpp"
 #include "jobs/cli/run_plan.hpp"
-#include "jobs/library_plan.hpp"
-#include "jobs/verification.hpp"
+#include "jobs/plan/library_plan.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {

@@ -10,7 +10,7 @@
 #include "jobs/cli/recognise_report.hpp"
 #include "jobs/cli/run_plan.hpp"
 #include "jobs/cli/temporary_folder.hpp"
-#include "jobs/recognise_plan.hpp"
+#include "jobs/plan/recognise_plan.hpp"
 #include "jobs/stages/recognised_file.hpp"
 
 namespace semigeo::jobs::cli {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "jobs/cli/run_report.hpp"
-#include "jobs/recognise_plan.hpp"
+#include "jobs/plan/recognise_plan.hpp"
 
 namespace semigeo::jobs::cli {
 

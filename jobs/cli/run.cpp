@@ -7,7 +7,7 @@
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/run_options.hpp"
 #include "jobs/cli/run_plan.hpp"
-#include "jobs/library_plan.hpp"
+#include "jobs/plan/library_plan.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {

@@ -3,9 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "jobs/config.hpp"
-#include "jobs/local_executor.hpp"
-#include "jobs/slurm_executor.hpp"
+#include "jobs/plan/config.hpp"
+#include "jobs/run/local_executor.hpp"
+#include "jobs/slurm/slurm_executor.hpp"
 
 namespace semigeo::jobs::cli {
 

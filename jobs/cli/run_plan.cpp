@@ -11,15 +11,15 @@
 
 #include "io/files/atomic_file.hpp"
 #include "io/files/error.hpp"
-#include "jobs/archive_lock.hpp"
+#include "jobs/archive/archive_lock.hpp"
+#include "jobs/archive/estimates.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/run_report.hpp"
-#include "jobs/estimates.hpp"
-#include "jobs/library_plan.hpp"
-#include "jobs/local_executor.hpp"
-#include "jobs/plan_graph.hpp"
-#include "jobs/process_usage.hpp"
-#include "jobs/run_journal.hpp"
+#include "jobs/plan/library_plan.hpp"
+#include "jobs/plan/plan_graph.hpp"
+#include "jobs/run/local_executor.hpp"
+#include "jobs/run/process_usage.hpp"
+#include "jobs/run/run_journal.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {

@@ -3,10 +3,10 @@
 #include <functional>
 #include <vector>
 
+#include "jobs/archive/digest_cache.hpp"
 #include "jobs/cli/run_options.hpp"
 #include "jobs/cli/run_report.hpp"
-#include "jobs/digest_cache.hpp"
-#include "jobs/plan.hpp"
+#include "jobs/plan/plan.hpp"
 
 namespace semigeo::jobs::cli {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "jobs/cli/json_output.hpp"
-#include "jobs/library_plan.hpp"
+#include "jobs/plan/library_plan.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "jobs/local_executor.hpp"
-#include "jobs/plan.hpp"
-#include "jobs/slurm_executor.hpp"
+#include "jobs/plan/plan.hpp"
+#include "jobs/run/local_executor.hpp"
+#include "jobs/slurm/slurm_executor.hpp"
 
 namespace semigeo::jobs::cli {
 

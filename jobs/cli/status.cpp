@@ -3,10 +3,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "jobs/archive/status.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/json_output.hpp"
-#include "jobs/progress.hpp"
-#include "jobs/status.hpp"
+#include "jobs/run/progress.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {

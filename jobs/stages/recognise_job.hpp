@@ -6,7 +6,7 @@
 
 #include "engine/run_context.hpp"
 #include "io/library/hash_library.hpp"
-#include "jobs/config.hpp"
+#include "jobs/plan/config.hpp"
 
 namespace semigeo::jobs {
 

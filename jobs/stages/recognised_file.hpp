@@ -6,7 +6,7 @@
 #include <string>
 
 #include "io/library/hash_library.hpp"
-#include "jobs/config.hpp"
+#include "jobs/plan/config.hpp"
 #include "jobs/stages/recognise_scene.hpp"
 
 namespace semigeo::jobs {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "jobs/config.hpp"
+#include "jobs/plan/config.hpp"
 #include "jobs/stages/evolving_surface.hpp"
 #include "jobs/stages/level_features.hpp"
 #include "kernels/recognition/surface_samples.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "engine/run_context.hpp"
-#include "jobs/config.hpp"
+#include "jobs/plan/config.hpp"
 #include "jobs/stages/prepare_surface.hpp"
 #include "jobs/stages/scan_surface.hpp"
 #include "kernels/repair/remeshing.hpp"

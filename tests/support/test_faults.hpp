@@ -4,7 +4,8 @@
 
 namespace semigeo::tests {
 
-/// While it lives, workers that are started do what jobs/worker.hpp says of SEMIGEO_TEST_FAULTS.
+/// While it lives, workers that are started do what jobs/run/worker.hpp says of
+/// SEMIGEO_TEST_FAULTS.
 class TestFaults {
  public:
   explicit TestFaults(const char* faults) { setenv(kName, faults, 1); }

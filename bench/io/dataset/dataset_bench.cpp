@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "bench/support/memory.hpp"
-#include "io/files/chunk_codec.hpp"
 #include "io/dataset/dataset_writer.hpp"
+#include "io/files/chunk_codec.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/temporary_folder.hpp"
 

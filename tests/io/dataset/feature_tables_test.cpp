@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "io/hdf5/array_reader.hpp"
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
+#include "io/hdf5/array_reader.hpp"
 #include "io/hdf5/hdf5_library.hpp"
 #include "tests/io/dataset/sample_dataset.hpp"
 #include "tests/support/equal_features.hpp"

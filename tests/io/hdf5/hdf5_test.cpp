@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "io/hdf5/array_reader.hpp"
 #include "io/files/error.hpp"
+#include "io/hdf5/array_reader.hpp"
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -1,0 +1,158 @@
+#include "jobs/archive/archive_lock.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <system_error>
+
+#include "io/files/atomic_file.hpp"
+#include "io/files/file_descriptor.hpp"
+#include "jobs/archive/utc_time.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFileName = "lock";
+
+using Owner = LockOwner;
+
+std::string text_of(const Owner& owner) {
+  const ProcessIdentity& process = owner.process;
+  const nlohmann::ordered_json document = {{"host", process.host},
+                                           {"pid", process.pid},
+                                           {"boot_id", process.boot_id},
+                                           {"process_started", process.started},
+                                           {"since", owner.since}};
+  return document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
+}
+
+std::optional<Owner> owner_in(const std::string& text) {
+  try {
+    const auto document = nlohmann::json::parse(text);
+    Owner owner;
+    document.at("host").get_to(owner.process.host);
+    document.at("pid").get_to(owner.process.pid);
+    document.at("boot_id").get_to(owner.process.boot_id);
+    document.at("process_started").get_to(owner.process.started);
+    document.at("since").get_to(owner.since);
+    return owner;
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;
+  }
+}
+
+/// Of a lock that is open; empty if it cannot be read.
+std::string content_of(const io::FileDescriptor& lock) {
+  std::array<char, 4096> buffer;
+  const ssize_t count = pread(lock.get(), buffer.data(), buffer.size(), 0);
+  return count > 0 ? std::string(buffer.data(), static_cast<std::size_t>(count)) : std::string();
+}
+
+[[noreturn]] void fail(const fs::path& file, int error) {
+  throw io::Error(file, "", "cannot be written: " + std::generic_category().message(error),
+                  "check the archive, its permissions and the free space");
+}
+
+[[noreturn]] void refuse(const fs::path& file, const std::optional<Owner>& owner) {
+  if (!owner)
+    throw LockedError(file, "", "another run has the archive, but this file does not say which",
+                      "remove the file if none is under way");
+  const ProcessIdentity& process = owner->process;
+  const std::string who = "process " + std::to_string(process.pid) + " on " + process.host +
+                          " has the archive since " + owner->since;
+  if (life_of(process) == Life::kOnAnotherHost)
+    throw LockedError(file, "", who,
+                      "wait until it ends; if it is gone from that host, remove the file");
+  throw LockedError(file, "", who, "wait until it ends, or end it");
+}
+
+/// Gives a finished file its name unless that is taken; whether it was not.
+bool place(const fs::path& from, const fs::path& to) {
+  if (link(from.c_str(), to.c_str()) == 0) return true;
+  const int error = errno;
+  struct stat status {};
+  // The answer of a file server may have been lost, and its repetition finds the name taken.
+  if (stat(from.c_str(), &status) == 0 && status.st_nlink == 2) return true;
+  if (error == EEXIST) return false;
+  // Some file systems know no links: those of memory cards and of some servers.
+  if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
+  if (errno == EEXIST) return false;
+  fail(to, error);
+}
+
+/// Waits for the right to replace this very file, which lasts until it is closed. False if the file
+/// system knows no such right.
+bool guard(const io::FileDescriptor& lock) {
+  struct flock whole {};
+  whole.l_type = F_WRLCK;
+  whole.l_whence = SEEK_SET;
+  while (fcntl(lock.get(), F_OFD_SETLKW, &whole) != 0)
+    if (errno != EINTR) return false;
+  return true;
+}
+
+bool is_at(const io::FileDescriptor& lock, const fs::path& file) {
+  struct stat opened {};
+  struct stat named {};
+  return fstat(lock.get(), &opened) == 0 && stat(file.c_str(), &named) == 0 &&
+         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+}
+
+/// Puts `ours` in the place of a dead owner's lock; LockedError if the owner is not dead. False if
+/// meanwhile the lock was freed or taken: then all begins again.
+bool take_over(const fs::path& ours, const fs::path& file) {
+  const io::FileDescriptor lock(file, O_RDWR);
+  if (!lock && errno == ENOENT) return false;
+  if (!lock) fail(file, errno);
+  const bool guarded = guard(lock);
+  if (!is_at(lock, file)) return false;
+  const auto owner = owner_in(content_of(lock));
+  if (!owner || life_of(owner->process) != Life::kDead) refuse(file, owner);
+  if (!guarded)
+    throw LockedError(file, "", "a run that has died had the archive",
+                      "remove the file: this file system does not let programs agree on who may");
+  if (std::rename(ours.c_str(), file.c_str()) != 0) fail(file, errno);
+  return true;
+}
+
+}  // namespace
+
+ArchiveLock::ArchiveLock(const fs::path& archive)
+    : file_(archive / kFileName), owner_(this_process()) {
+  io::AtomicFile ours(file_);  // for its name, and to be removed whatever comes
+  {
+    const io::FileDescriptor text(ours.temporary_path(), O_WRONLY | O_CREAT | O_EXCL);
+    if (!text) fail(file_, errno);
+    const std::string content = text_of({owner_, utc_time()});
+    if (write(text.get(), content.data(), content.size()) != static_cast<ssize_t>(content.size()))
+      fail(file_, errno);
+  }
+  ours.sync();
+  while (!place(ours.temporary_path(), file_) && !take_over(ours.temporary_path(), file_)) {
+  }
+}
+
+ArchiveLock::~ArchiveLock() {
+  if (owner_.pid != getpid()) return;
+  // Nobody replaces the lock of the living; one that was removed by hand may be another's by now.
+  const io::FileDescriptor lock(file_, O_RDONLY);
+  const auto owner = lock ? owner_in(content_of(lock)) : std::nullopt;
+  if (owner && owner->process == owner_) unlink(file_.c_str());
+}
+
+std::optional<LockOwner> lock_owner(const fs::path& archive) {
+  const io::FileDescriptor lock(archive / kFileName, O_RDONLY);
+  if (!lock) return std::nullopt;
+  const auto owner = owner_in(content_of(lock));
+  return owner && life_of(owner->process) != Life::kDead ? owner : std::nullopt;
+}
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,225 @@
+#include "jobs/archive/digest_cache.hpp"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <ctime>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include "io/dataset/dataset.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/error.hpp"
+#include "io/files/file_digest.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFileName = "digests.txt";
+constexpr std::int64_t kNanoseconds = 1'000'000'000;
+/// Coarsest step of the times of a file system in use.
+constexpr std::int64_t kRacy = 2 * kNanoseconds;
+constexpr std::string_view kNoJob = "-";
+
+std::int64_t nanoseconds(const timespec& time) {
+  return std::int64_t{time.tv_sec} * kNanoseconds + time.tv_nsec;
+}
+
+/// First line of the file: what another version wrote, or a damaged disk, begins otherwise.
+std::string head_of(std::string_view body) {
+  return "semigeo-digests 1 " + std::to_string(io::kDatasetFormatVersion) + ' ' +
+         io::xxh3_of_text(body) + '\n';
+}
+
+/// Takes what stands before the next space.
+std::string_view next_word(std::string_view& line) {
+  const std::size_t end = std::min(line.find(' '), line.size());
+  const std::string_view word = line.substr(0, end);
+  line.remove_prefix(std::min(end + 1, line.size()));
+  return word;
+}
+
+template <typename Number>
+Number next_number(std::string_view& line) {
+  const std::string_view word = next_word(line);
+  Number number = 0;
+  std::from_chars(word.data(), word.data() + word.size(), number);
+  return number;
+}
+
+bool is_scan(const std::string& path) {
+  return path.starts_with('/');
+}
+
+}  // namespace
+
+std::optional<FileStamp> stamp_of(const fs::path& file) {
+  struct stat status {};
+  if (stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+  return FileStamp{.size = status.st_size,
+                   .modified = nanoseconds(status.st_mtim),
+                   .changed = nanoseconds(status.st_ctim),
+                   .inode = status.st_ino};
+}
+
+fs::path dataset_path(const fs::path& archive, const std::string& name) {
+  return archive / "scans" / (name + ".vtkhdf");
+}
+
+/// What was read in a file, and between which stamps.
+struct DigestCache::Reading {
+  DatasetKeys keys;
+  std::int64_t begun = 0;
+  std::optional<FileStamp> before;
+  std::optional<FileStamp> after;
+
+  bool is_trustworthy() const {
+    return before && before == after &&
+           std::max(before->modified, before->changed) + kRacy <= begun;
+  }
+};
+
+std::int64_t DigestCache::system_clock() {
+  timespec time{};
+  clock_gettime(CLOCK_REALTIME, &time);
+  return nanoseconds(time);
+}
+
+DigestCache::DigestCache(fs::path archive, Clock clock)
+    : archive_(std::move(archive)), now_(clock) {}
+
+DigestCache DigestCache::read(const fs::path& archive, Clock clock) {
+  DigestCache cache(archive, clock);
+  std::ifstream stream(archive / kFileName, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const std::size_t head_end = text.find('\n');
+  if (head_end == std::string::npos) return cache;
+  std::string_view body = std::string_view(text).substr(head_end + 1);
+  if (!text.starts_with(head_of(body))) return cache;
+  while (!body.empty()) {
+    std::string_view line = body.substr(0, body.find('\n'));
+    body.remove_prefix(std::min(line.size() + 1, body.size()));
+    Entry entry;
+    entry.keys.input_xxh3 = next_word(line);
+    entry.keys.job_key = next_word(line);
+    entry.stamp.size = next_number<std::int64_t>(line);
+    entry.stamp.modified = next_number<std::int64_t>(line);
+    entry.stamp.changed = next_number<std::int64_t>(line);
+    entry.stamp.inode = next_number<std::uint64_t>(line);
+    cache.entries_.emplace_hint(cache.entries_.end(), line, std::move(entry));
+  }
+  cache.text_ = std::move(text);
+  return cache;
+}
+
+const DigestCache::Entry* DigestCache::find(const std::string& path,
+                                            const std::optional<FileStamp>& stamp) const {
+  const auto found = entries_.find(path);
+  return found != entries_.end() && found->second.stamp == stamp ? &found->second : nullptr;
+}
+
+void DigestCache::remember(const std::string& path, const Reading& reading) {
+  // A line ends with its path: a path of several lines is not worth a notation.
+  if (reading.is_trustworthy() && path.find('\n') == std::string::npos) {
+    entries_[path] = {.keys = reading.keys, .stamp = *reading.before, .used = true};
+  } else {
+    entries_.erase(path);
+  }
+}
+
+std::vector<ScanDigest> DigestCache::scan_digests(const std::vector<FoundScan>& scans,
+                                                  int threads) {
+  std::vector<Reading> readings(scans.size());
+  std::vector<ScanDigest> digests(scans.size());
+  const auto digest = [&](std::size_t i) {
+    Reading& reading = readings[i];
+    reading.begun = now_();
+    reading.before = stamp_of(scans[i].file);
+    if (const Entry* known = find(scans[i].file.native(), reading.before)) {
+      digests[i].xxh3 = known->keys.input_xxh3;
+      return;
+    }
+    try {
+      digests[i].xxh3 = io::xxh3_of_file(scans[i].input);
+    } catch (const std::exception& e) {
+      digests[i].error = e.what();
+      return;
+    }
+    reading.keys = {.job_key = std::string(kNoJob), .input_xxh3 = digests[i].xxh3};
+    reading.after = stamp_of(scans[i].file);
+  };
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < scans.size(); i = next++) {
+      digests[i].error = scans[i].error;
+      if (scans[i].error.empty()) digest(i);
+    }
+  };
+  {
+    const std::size_t most =
+        threads > 0 ? static_cast<std::size_t>(threads) : std::thread::hardware_concurrency();
+    std::vector<std::jthread> helpers;
+    for (std::size_t i = 1; i < std::min(most, scans.size()); ++i) helpers.emplace_back(work);
+    work();
+  }
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const std::string& path = scans[i].file.native();
+    if (find(path, readings[i].before) != nullptr) {
+      entries_[path].used = true;
+    } else {
+      remember(path, readings[i]);
+    }
+  }
+  return digests;
+}
+
+std::optional<DatasetKeys> DigestCache::dataset_keys(const std::string& name) {
+  Reading reading;
+  reading.begun = now_();
+  const fs::path path = dataset_path(archive_, name);
+  reading.before = stamp_of(path);
+  if (find(name, reading.before) != nullptr) {
+    Entry& entry = entries_[name];
+    entry.used = true;
+    return entry.keys;
+  }
+  std::optional<DatasetKeys> keys;
+  try {
+    io::DatasetOrigin origin = io::read_origin(path);
+    keys = {.job_key = std::move(origin.job_key), .input_xxh3 = std::move(origin.input_xxh3)};
+    reading.keys = *keys;
+    reading.after = stamp_of(path);
+  } catch (const io::Error&) {
+  }
+  remember(name, reading);
+  return keys;
+}
+
+fs::path DigestCache::file_of(const std::string& path) const {
+  return is_scan(path) ? fs::path(path) : dataset_path(archive_, path);
+}
+
+void DigestCache::write() {
+  std::string body;
+  for (const auto& [path, entry] : entries_) {
+    // Those of other folders whose scans are in this archive stay.
+    if (!entry.used && !stamp_of(file_of(path))) continue;
+    const FileStamp& stamp = entry.stamp;
+    body += entry.keys.input_xxh3 + ' ' + entry.keys.job_key + ' ' + std::to_string(stamp.size) +
+            ' ' + std::to_string(stamp.modified) + ' ' + std::to_string(stamp.changed) + ' ' +
+            std::to_string(stamp.inode) + ' ' + path + '\n';
+  }
+  std::string text = head_of(body) + body;
+  if (text == text_) return;
+  io::write_file_atomically(archive_ / kFileName, text);
+  text_ = std::move(text);
+}
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,121 @@
+#include "jobs/archive/sources.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <set>
+#include <string_view>
+
+#include "io/files/atomic_file.hpp"
+#include "io/files/error.hpp"
+#include "io/files/file_digest.hpp"
+#include "jobs/archive/path_text.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFileName = "sources.json";
+constexpr std::string_view kMark = "--";  // what a base never has where this stands
+constexpr std::size_t kHashDigits = 8;
+
+std::string with_hash(const Unnamed& scan) {
+  return scan.base + std::string(kMark) +
+         io::xxh3_of_text(scan.scan.string()).substr(0, kHashDigits);
+}
+
+bool is_variant(const std::string& name, const std::string& base) {
+  return name == base || (name.size() == base.size() + kMark.size() + kHashDigits &&
+                          name.starts_with(base + std::string(kMark)));
+}
+
+/// What cannot be looked at is not known to be gone.
+bool is_gone(const fs::path& scan) {
+  std::error_code error;
+  return fs::status(scan, error).type() == fs::file_type::not_found;
+}
+
+}  // namespace
+
+Sources Sources::read(const fs::path& archive) {
+  Sources sources;
+  const fs::path file = archive / kFileName;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) {
+    std::error_code error;
+    if (!fs::exists(fs::status(file, error))) return sources;
+    throw io::Error(file, "", "cannot be read", "check its permissions");
+  }
+  try {
+    const auto document = nlohmann::json::parse(stream);
+    for (const auto& [name, path] : document.items())
+      sources.by_name_[name] = unescaped(path.get<std::string>());
+  } catch (const nlohmann::json::exception&) {
+    throw io::Error(file, "", "is damaged: it must name a scan for each dataset",
+                    "remove it; datasets then count as made of the scans that are given next");
+  }
+  return sources;
+}
+
+void Sources::claim(const std::string& name, const fs::path& scan) {
+  fs::path& known = by_name_[name];
+  if (known.empty() || is_gone(known)) known = scan;
+}
+
+void Sources::write(const fs::path& archive) const {
+  nlohmann::json document = nlohmann::json::object();
+  for (const auto& [name, scan] : by_name_) document[name] = escaped(scan.string());
+  const std::string text = document.dump(2) + "\n";
+  const fs::path file = archive / kFileName;
+  std::ifstream stream(file, std::ios::binary);
+  const std::string before{std::istreambuf_iterator<char>(stream), {}};
+  if (text != before) io::write_file_atomically(file, text);
+}
+
+std::vector<std::string> choose_names(
+    const std::vector<Unnamed>& scans, const Sources& sources,
+    const std::function<bool(const std::string&, const std::string&)>& is_of) {
+  std::vector<std::size_t> order(scans.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, {}, [&](std::size_t i) { return scans[i].scan; });
+
+  std::vector<std::string> names(scans.size());
+  std::set<std::string> taken;
+  /// Gives each scan that has no name yet the first variant of its base, known or the base itself,
+  /// that `suits` it.
+  const auto pass = [&](const auto& suits) {
+    for (const std::size_t i : order) {
+      const Unnamed& scan = scans[i];
+      const auto take = [&](const std::string& name, const fs::path* known) {
+        if (!names[i].empty() || !is_variant(name, scan.base) || taken.contains(name) ||
+            !suits(scan, name, known))
+          return;
+        names[i] = name;
+        taken.insert(name);
+      };
+      const auto& known = sources.by_name();
+      auto at = known.lower_bound(scan.base);
+      if (at == known.end() || at->first != scan.base) take(scan.base, nullptr);
+      for (; at != known.end() && at->first.starts_with(scan.base); ++at)
+        take(at->first, &at->second);
+    }
+  };
+  pass([](const Unnamed& scan, const std::string&, const fs::path* known) {
+    return known != nullptr && *known == scan.scan;
+  });
+  pass([&](const Unnamed& scan, const std::string& name, const fs::path* known) {
+    const bool free = name == scan.base || known == nullptr || is_gone(*known);
+    return free && !scan.xxh3.empty() && is_of(name, scan.xxh3);
+  });
+  pass([&](const Unnamed& scan, const std::string& name, const fs::path* known) {
+    return name == scan.base && (known == nullptr || is_gone(*known));
+  });
+  for (const std::size_t i : order)
+    if (names[i].empty()) names[i] = with_hash(scans[i]);
+  return names;
+}
+
+}  // namespace semigeo::jobs

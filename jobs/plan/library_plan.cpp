@@ -1,0 +1,220 @@
+#include "jobs/plan/library_plan.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "io/dataset/dataset.hpp"
+#include "io/files/error.hpp"
+#include "io/library/triplet_run.hpp"
+#include "jobs/archive/verification.hpp"
+#include "jobs/plan/job_key.hpp"
+#include "jobs/stages/partition_job.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+using Kind = Reason::Kind;
+
+constexpr const char* kArchiveLibrary = "library.h5";
+
+PlannedJob triplets_of(const LibraryModel& model, const fs::path& parts,
+                       const RecognitionParameters& parameters) {
+  PlannedJob planned;
+  planned.job = {.kind = JobKind::kTriplets,
+                 .name = model.name,
+                 .input = model.dataset,
+                 .output = run_path(parts, model.name),
+                 .key = triplets_key(model.name, model.dataset_key, parameters)};
+  if (model.maker) planned.after = {*model.maker};
+  planned.inputs_are_there = !model.maker;
+  planned.error = model.error;
+  return planned;
+}
+
+std::string problem_of_run(const fs::path& path) {
+  try {
+    io::triplet_run_key(path);
+    return "";
+  } catch (const io::Error& error) {
+    return error.what();
+  }
+}
+
+void damaged(PlannedJob& planned, const std::string& problem) {
+  planned.up_to_date = false;
+  planned.reasons = {{.kind = Kind::kDamagedOutput,
+                      .before = std::string(output_name_of(planned.job.kind)),
+                      .now = problem}};
+}
+
+void discard(const fs::path& path) {
+  std::error_code ignored;
+  fs::remove_all(path, ignored);
+}
+
+}  // namespace
+
+LibraryPlace place_of(const fs::path& library) {
+  const fs::path folder = library.parent_path();
+  std::error_code ignored;
+  if (library.filename() == kArchiveLibrary && fs::is_directory(folder / "scans", ignored))
+    return place_of_archive(folder);
+  fs::path parts = library;
+  parts += ".parts";
+  return {.library = library, .parts = parts, .home = parts};
+}
+
+LibraryPlace place_of_archive(const fs::path& archive) {
+  return {.library = archive / kArchiveLibrary, .parts = archive / "library", .home = archive};
+}
+
+LibraryModel model_of(const fs::path& dataset) {
+  LibraryModel model{.name = dataset.stem().string(), .dataset = dataset};
+  try {
+    model.dataset_key = io::read_origin(dataset).job_key;
+  } catch (const io::Error& error) {
+    model.error = error.what();
+  }
+  return model;
+}
+
+std::vector<LibraryModel> models_of(const fs::path& archive, const std::vector<PlannedJob>& plan,
+                                    DigestCache& cache) {
+  std::map<std::string, LibraryModel> models;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(archive / "scans", error)) {
+    const fs::path& path = entry.path();
+    if (path.extension() != ".vtkhdf" || path.filename().string().starts_with('.')) continue;
+    const std::string name = path.stem().string();
+    if (const auto keys = cache.dataset_keys(name)) {
+      models[name] = {.name = name, .dataset = path, .dataset_key = keys->job_key};
+    } else {
+      models[name] = model_of(path);
+    }
+  }
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    const Job& job = plan[i].job;
+    if (job.kind != JobKind::kSurface) continue;
+    LibraryModel& model = models[job.name];
+    // What was made of the scan when it could be read is a model still.
+    if (!plan[i].error.empty() && !model.dataset_key.empty()) continue;
+    model = {.name = job.name,
+             .dataset = job.output,
+             .dataset_key = job.key,
+             .maker = i,
+             .error = plan[i].error};
+  }
+  std::vector<LibraryModel> list;
+  for (auto& [name, model] : models) list.push_back(std::move(model));
+  return list;
+}
+
+void plan_library(std::vector<PlannedJob>& plan, const std::vector<LibraryModel>& models,
+                  const LibraryPlace& place, const RecognitionParameters& parameters) {
+  std::vector<std::string> names;
+  std::vector<std::string> keys;
+  std::vector<std::size_t> after;
+  for (const LibraryModel& model : models) {
+    names.push_back(model.name);
+    const bool kept = model.dataset.empty();
+    if (kept) {
+      keys.push_back(output_key({.kind = JobKind::kTriplets,
+                                 .name = model.name,
+                                 .input = {},
+                                 .output = run_path(place.parts, model.name),
+                                 .key = {}}));
+      continue;
+    }
+    // An unreadable scan is a failure once: that of its own job.
+    if (model.maker && !model.error.empty()) continue;
+    PlannedJob planned = triplets_of(model, place.parts, parameters);
+    if (planned.error.empty()) keys.push_back(planned.job.key);
+    after.push_back(plan.size());
+    plan.push_back(std::move(planned));
+  }
+  PlannedJob library;
+  library.job = {.kind = JobKind::kLibrary,
+                 .name = place.library.filename().string(),
+                 .input = place.parts,
+                 .output = place.library,
+                 .key = library_key(keys, parameters),
+                 .models = names};
+  judge_output(library);
+  // While the library is what it should be, nobody is going to read its runs.
+  for (const std::size_t triplets : after)
+    if (plan[triplets].error.empty())
+      judge_output(plan[triplets], library.up_to_date ? output_key_in_head : output_key);
+  for (const io::ShapeRange& shapes : partition_shapes(std::ssize(keys))) {
+    PlannedJob partition;
+    const fs::path output = partition_path(place.parts, library.job.partitions++);
+    partition.job = {.kind = JobKind::kPartition,
+                     .name = output.filename().string(),
+                     .input = place.parts,
+                     .output = output,
+                     .key = partition_key(keys, shapes),
+                     .models = names,
+                     .shapes = shapes,
+                     .library = place.library};
+    partition.after = after;
+    judge_output(partition);
+    // They are removed when the library is made.
+    if (library.up_to_date) {
+      partition.up_to_date = true;
+      partition.reasons.clear();
+    }
+    library.after.push_back(plan.size());
+    plan.push_back(std::move(partition));
+  }
+  plan.push_back(std::move(library));
+}
+
+void verify_library_plan(std::vector<PlannedJob>& plan) {
+  for (PlannedJob& planned : plan) {
+    if (!planned.up_to_date) continue;
+    const JobKind kind = planned.job.kind;
+    if (kind == JobKind::kTriplets) {
+      const std::string problem = problem_of_run(planned.job.output);
+      if (!problem.empty()) damaged(planned, problem);
+    } else if (kind == JobKind::kLibrary) {
+      const std::string problem = verify_libraries({planned.job.output}).front();
+      if (problem.empty()) continue;
+      damaged(planned, problem);
+      for (const std::size_t partition : planned.after) {
+        plan[partition].up_to_date = false;
+        judge_output(plan[partition]);
+      }
+    }
+  }
+}
+
+void remove_damaged_parts(const std::vector<PlannedJob>& plan) {
+  for (const PlannedJob& planned : plan)
+    if (!planned.reasons.empty() && planned.reasons.front().kind == Kind::kDamagedOutput)
+      discard(planned.job.output);
+}
+
+std::vector<std::string> missing_models(const Job& library) {
+  std::vector<std::string> missing;
+  std::error_code ignored;
+  for (const std::string& model : library.models)
+    if (!fs::exists(run_path(library.input, model), ignored)) missing.push_back(model);
+  return missing;
+}
+
+void remove_spare_parts(const Job& library) {
+  discard(library.input / "partitions");
+  std::set<fs::path> wanted;
+  for (const std::string& model : library.models)
+    wanted.insert(run_path(library.input, model).filename());
+  std::vector<fs::path> spare;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(library.input / "triplets", error))
+    if (entry.path().extension() == ".run" && !wanted.contains(entry.path().filename()))
+      spare.push_back(entry.path());
+  for (const fs::path& path : spare) discard(path);
+}
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,72 @@
+#include "jobs/run/run_journal.hpp"
+
+#include <algorithm>
+#include <thread>
+
+#include "io/files/error.hpp"
+#include "jobs/archive/process_identity.hpp"
+#include "jobs/archive/scan_size.hpp"
+#include "jobs/archive/utc_time.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+/// Sorts by time, and is no other run's.
+std::string run_name(const ProcessIdentity& process) {
+  return utc_time() + " " + process.host + " " + std::to_string(process.pid);
+}
+
+}  // namespace
+
+RunJournal::RunJournal(const std::filesystem::path& archive, RunStarted run) {
+  const ProcessIdentity process = this_process();
+  run.host = process.host;
+  run.pid = process.pid;
+  if (run.threads <= 0) run.threads = std::max(1U, std::thread::hardware_concurrency());
+  try {
+    journal_.emplace(archive, run_name(process));
+  } catch (const io::Error& e) {
+    problem_ = e.what();
+  }
+  write(run);
+}
+
+void RunJournal::write(const JournalEvent& event) {
+  if (!journal_) return;
+  try {
+    journal_->write(event);
+  } catch (const io::Error& e) {
+    if (problem_.empty()) problem_ = e.what();  // the disk may have room again later
+  }
+}
+
+void RunJournal::job_started(const PlannedJob& planned) {
+  write(JobStarted{.job = job_id(planned.job), .key = planned.job.key});
+}
+
+void RunJournal::job_ended(const PlannedJob& planned, const JobOutcome& outcome) {
+  JobEnded ended{.job = job_id(planned.job),
+                 .key = planned.job.key,
+                 .state = std::string(name_of(outcome.state)),
+                 .error = outcome.error,
+                 .seconds = outcome.seconds,
+                 .cpu_seconds = outcome.cpu_seconds,
+                 .peak_bytes = outcome.peak_bytes,
+                 .threads = outcome.threads};
+  if (planned.job.kind == JobKind::kSurface && !planned.sidecar_only) {
+    ScanSize size = scan_size(planned.job.input);
+    ended.format = std::move(size.format);
+    ended.input_bytes = static_cast<std::int64_t>(size.bytes);
+  }
+  if (const auto* result = std::get_if<SurfaceJobResult>(&outcome.result)) {
+    ended.vertices = result->vertices;
+    ended.levels = result->levels;
+  }
+  write(ended);
+}
+
+void RunJournal::run_ended(const RunEnded& run) {
+  write(run);
+}
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,284 @@
+#include "jobs/run/worker.hpp"
+
+#include <fcntl.h>
+#include <malloc.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <mutex>
+#include <new>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/descriptor.hpp"
+#include "io/dataset/xdmf.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/error.hpp"
+#include "jobs/run/job_line.hpp"
+#include "jobs/run/job_stage.hpp"
+#include "jobs/run/process_usage.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::chrono::milliseconds kReportInterval{250};
+constexpr int kKeptMemory = 64 << 20;       // free bytes of the heap, from job to job
+constexpr int kLeastOwnMapping = 32 << 20;  // bytes of an allocation that is given back at once
+
+bool write_line(int descriptor, std::string line) {
+  line += '\n';
+  for (std::size_t at = 0; at < line.size();) {
+    const ssize_t written = write(descriptor, line.data() + at, line.size() - at);
+    if (written < 0 && errno != EINTR) return false;
+    at += static_cast<std::size_t>(std::max<ssize_t>(written, 0));
+  }
+  return true;
+}
+
+/// Reads lines from a descriptor.
+class Lines {
+ public:
+  explicit Lines(int descriptor) : descriptor_(descriptor) {}
+
+  bool next(std::string& line) {
+    for (;;) {
+      const std::size_t end = buffer_.find('\n');
+      if (end != std::string::npos) {
+        line = buffer_.substr(0, end);
+        buffer_.erase(0, end + 1);
+        return true;
+      }
+      char bytes[4096];
+      const ssize_t count = read(descriptor_, bytes, sizeof bytes);
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) return false;
+      buffer_.append(bytes, static_cast<std::size_t>(count));
+    }
+  }
+
+ private:
+  int descriptor_;
+  std::string buffer_;
+};
+
+/// Tells how much work is done, now and then.
+class Reporter : public engine::Observer {
+ public:
+  explicit Reporter(int answers) : answers_(answers) {}
+
+  void worked(std::int64_t amount) override {
+    const std::scoped_lock lock(mutex_);
+    unreported_ += amount;
+    const auto now = Clock::now();
+    if (now - reported_ < kReportInterval) return;
+    reported_ = now;
+    write_line(answers_, to_line(JobReply{.kind = JobReply::Kind::kWorked,
+                                          .worked = std::exchange(unreported_, 0),
+                                          .error = {},
+                                          .result = {}}));
+  }
+  std::int64_t unreported() const { return unreported_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  int answers_;
+  std::mutex mutex_;
+  std::int64_t unreported_ = 0;
+  Clock::time_point reported_ = Clock::now();
+};
+
+/// The file that standard output and error go to while a job runs. If nobody printed anything, the
+/// next job's log is the same file under another name: making and removing one for each would cost
+/// more than many a job.
+class JobLog {
+ public:
+  JobLog() = default;
+  ~JobLog() {
+    std::error_code ignored;
+    if (file_) fs::remove(path_, ignored);
+  }
+  JobLog(const JobLog&) = delete;
+  JobLog& operator=(const JobLog&) = delete;
+
+  /// Nowhere else if the path is empty, or cannot be opened: what a job prints is for people.
+  void begin(const fs::path& path) {
+    if (path.empty() || (!take_over(path) && !open_anew(path))) return;
+    std::fflush(nullptr);
+    for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) {
+      before_.emplace_back(fcntl(stream, F_DUPFD_CLOEXEC, 3));
+      dup2(file_.get(), stream);
+    }
+  }
+
+  void end() {
+    if (before_.empty()) return;
+    std::fflush(nullptr);
+    for (const int stream : {STDOUT_FILENO, STDERR_FILENO})
+      dup2(before_[stream - STDOUT_FILENO].get(), stream);
+    before_.clear();
+    struct stat status = {};
+    if (fstat(file_.get(), &status) != 0 || status.st_size != 0) file_ = {};
+  }
+
+ private:
+  bool take_over(const fs::path& path) {
+    if (!file_ || renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE) != 0)
+      return false;
+    path_ = path;
+    return true;
+  }
+
+  bool open_anew(const fs::path& path) {
+    std::error_code ignored;
+    if (file_) fs::remove(path_, ignored);
+    fs::create_directories(path.parent_path(), ignored);
+    file_ = engine::Descriptor(open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
+    path_ = path;
+    return static_cast<bool>(file_);
+  }
+
+  fs::path path_;
+  engine::Descriptor file_;  ///< none, or empty between jobs
+  std::vector<engine::Descriptor> before_;
+};
+
+void limit_address_space(std::uint64_t bytes) {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0) return;
+  limit.rlim_cur = bytes == 0 ? limit.rlim_max : std::min<rlim_t>(bytes, limit.rlim_max);
+  setrlimit(RLIMIT_AS, &limit);
+}
+
+/// What SEMIGEO_TEST_FAULTS has for this job.
+std::string fault_of(const Job& job) {
+  const std::string name = job.kind == JobKind::kSurface ? job.name : job_id(job);
+  const char* faults = std::getenv("SEMIGEO_TEST_FAULTS");
+  std::string_view rest = faults == nullptr ? "" : faults;
+  while (!rest.empty()) {
+    const std::string_view one = rest.substr(0, rest.find(','));
+    rest.remove_prefix(std::min(rest.size(), one.size() + 1));
+    const std::size_t equals = one.find('=');
+    if (equals != std::string_view::npos && one.substr(0, equals) == name)
+      return std::string(one.substr(equals + 1));
+  }
+  return "";
+}
+
+void simulate_fault(const JobRequest& request) {
+  const std::string fault = fault_of(request.job);
+  if (fault.empty()) return;
+  const fs::path mark = request.log.string() + ".once";
+  if (fault == "crash" || (fault == "crash-once" && !fs::exists(mark))) {
+    std::fprintf(stderr, "about to crash\n");
+    if (fault == "crash-once") std::fclose(std::fopen(mark.c_str(), "w"));
+    std::raise(SIGSEGV);
+  }
+  if (fault == "crash-once") fs::remove(mark);
+  if (fault == "loop")
+    for (volatile bool forever = true; forever;) {
+    }
+  if (fault == "sleep") pause();
+  if (fault == "memory")
+    for (std::vector<std::vector<char>> all;;) all.emplace_back(std::size_t{1} << 26, '1');
+}
+
+/// Whether the sidecar could be made; if not, the dataset must be, too.
+bool remake_sidecar(const Job& job) {
+  std::string text;
+  try {
+    text = io::sidecar_text(job.output);
+  } catch (const io::Error&) {
+    return false;
+  }
+  io::write_file_atomically(io::sidecar_of(job.output), text);
+  return true;
+}
+
+/// From now on the peak is that of what follows.
+void restart_peak() {
+  std::ofstream("/proc/self/clear_refs") << '5';
+}
+
+/// The most memory that was resident at once, in bytes; 0 if Linux does not say.
+double peak_bytes() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    double kibibytes = 0;
+    if (word == "VmHWM:" && status >> kibibytes) return 1024 * kibibytes;
+  }
+  return 0;
+}
+
+JobReply do_job(const JobRequest& request, JobLog& log, Reporter& reporter) {
+  JobReply reply;
+  const double cpu_before = process_usage().cpu_seconds;
+  restart_peak();
+  try {
+    log.begin(request.log);
+    limit_address_space(request.memory_bytes);
+    simulate_fault(request);
+    if (!request.sidecar_only || !remake_sidecar(request.job)) {
+      engine::Workers workers(request.threads);
+      reply.result = run_stage(request.job, request.parameters, {workers, reporter, {}});
+    }
+    reply.kind = JobReply::Kind::kDone;
+  } catch (const std::bad_alloc&) {
+    limit_address_space(0);
+    reply.error = subject_of(request.job).string() + ": needs more than the " +
+                  std::to_string(request.memory_bytes >> 20) +
+                  " MiB of memory that a job may have; give --memory-per-job more" +
+                  (request.job.kind == JobKind::kSurface ? ", or decimate the scan" : "");
+  } catch (const io::Error& e) {
+    reply.error = e.what();
+  } catch (const std::exception& e) {  // a thread that finds no room for its stack, for one
+    limit_address_space(0);
+    reply.error = subject_of(request.job).string() + ": " + e.what() +
+                  "; run again, or give --memory-per-job more if its " +
+                  std::to_string(request.memory_bytes >> 20) + " MiB of memory were too little";
+  }
+  log.end();
+  limit_address_space(0);
+  const double peak = peak_bytes();
+  // What the next job is allowed counts from what this process holds; a little spares it much.
+  if (mallinfo2().fordblks > std::size_t{kKeptMemory}) malloc_trim(0);
+  reply.worked = reporter.unreported();
+  reply.cpu_seconds = process_usage().cpu_seconds - cpu_before;
+  reply.peak_bytes = peak;
+  return reply;
+}
+
+}  // namespace
+
+int serve_jobs(int requests, int answers) {
+  Lines lines(requests);
+  // Memory comes from the system as zeroed pages, one fault each: what is freed is soon used again.
+  mallopt(M_MMAP_THRESHOLD, kLeastOwnMapping);
+  mallopt(M_TRIM_THRESHOLD, kKeptMemory);
+  JobLog log;
+  std::string line;
+  while (lines.next(line)) {
+    JobRequest request;
+    try {
+      request = job_request_from(line);
+    } catch (const std::exception& e) {
+      std::fprintf(stderr, "semigeo: a line %s\n", e.what());
+      return 2;
+    }
+    Reporter reporter(answers);
+    const JobReply reply = do_job(request, log, reporter);
+    if (!write_line(answers, to_line(reply))) return 0;  // nobody listens any more
+  }
+  return 0;
+}
+
+}  // namespace semigeo::jobs

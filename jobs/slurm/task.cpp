@@ -1,0 +1,95 @@
+#include "jobs/slurm/task.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+#include <vector>
+
+#include "io/files/atomic_file.hpp"
+#include "jobs/slurm/task_list.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+/// Who waits for the results looks about as often.
+constexpr std::chrono::seconds kWriteInterval{5};
+/// "No time left" where 0 means "any".
+constexpr double kNoTime = 1e-9;
+
+/// Keeps the file of results up to date.
+class Results : public JobListener {
+ public:
+  explicit Results(fs::path file) : file_(std::move(file)), results_(read_results(file_)) {}
+
+  void job_started(const PlannedJob&) override {}
+  void job_ended(const PlannedJob& planned, const JobOutcome& outcome) override {
+    set(planned.job, outcome);
+    if (Clock::now() - written_ >= kWriteInterval) write();
+  }
+  /// What a first copy of the task has told of what it made stays.
+  void set(const Job& job, const JobOutcome& outcome) {
+    JobOutcome& known = results_[job_id(job)];
+    if (outcome.state != JobState::kUpToDate || known.state != JobState::kDone) known = outcome;
+  }
+  void write() {
+    io::write_file_atomically(file_, results_text(results_));
+    written_ = Clock::now();
+  }
+
+ private:
+  fs::path file_;
+  TaskResults results_;
+  Clock::time_point written_ = Clock::now();
+};
+
+double seconds_since_1970() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+ExecutorOptions options_of(const Task& task) {
+  const TaskSettings& settings = task.settings;
+  ExecutorOptions options{.program = {},
+                          .logs = settings.archive / "logs",
+                          .threads = settings.threads,
+                          .memory_bytes = settings.memory_bytes,
+                          .memory_per_job = task.jobs.front().memory_bytes,
+                          .timeout_seconds = settings.timeout_seconds,
+                          .retries = settings.retries,
+                          .fail_fast = settings.fail_fast,
+                          .estimates = Estimates::read(settings.archive)};
+  if (settings.deadline > 0)
+    options.most_seconds = std::max(settings.deadline - seconds_since_1970(), kNoTime);
+  return options;
+}
+
+}  // namespace
+
+bool run_task(const fs::path& list, int number, const fs::path& program) {
+  const Task task = read_task(list, number);
+  std::vector<PlannedJob> plan;
+  std::uintmax_t bytes = 0;
+  for (const JobRequest& request : task.jobs) {
+    PlannedJob& planned = plan.emplace_back();
+    planned.job = request.job;
+    // Of other kinds it depends on what the jobs before have made.
+    planned.up_to_date = request.job.kind == JobKind::kSurface && is_complete(request.job);
+    planned.sidecar_only = request.sidecar_only;
+    planned.scan = request.job.input;
+    bytes += bytes_to_read(planned);
+  }
+  ExecutorOptions options = options_of(task);
+  options.program = program;
+  options.worker_log = log_of_task(list, number);
+  Results results(results_of(list, number));
+  Progress progress(std::ranges::count(plan, false, &PlannedJob::up_to_date), bytes);
+  const std::vector<JobOutcome> outcomes =
+      run_jobs(plan, task.jobs.front().parameters, options, progress, &results);
+  for (std::size_t i = 0; i < plan.size(); ++i) results.set(plan[i].job, outcomes[i]);
+  results.write();
+  return std::ranges::count(outcomes, JobState::kNotRun, &JobOutcome::state) == 0;
+}
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,192 @@
+#include "jobs/slurm/task_list.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <string_view>
+
+#include "io/files/error.hpp"
+#include "jobs/archive/path_text.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr double kTaskSeconds = 300;
+constexpr std::size_t kMostTasks = 10'000;
+
+/// Jobs in their order, a new task whenever the next one would make it longer than `seconds`.
+std::vector<std::vector<std::size_t>> filled(std::span<const std::size_t> order,
+                                             std::span<const double> expected, double seconds) {
+  std::vector<std::vector<std::size_t>> tasks;
+  double sum = 0;
+  for (const std::size_t job : order) {
+    if (tasks.empty() || sum + expected[job] > seconds) {
+      tasks.emplace_back();
+      sum = 0;
+    }
+    tasks.back().push_back(job);
+    sum += expected[job];
+  }
+  return tasks;
+}
+
+/// With this a task finds its lines among those of others without understanding them.
+std::string head_of(int number) {
+  return R"({"task":)" + std::to_string(number) + ',';
+}
+
+/// The same object with more at its front.
+std::string with_front(const std::string& front, const std::string& object) {
+  return front + object.substr(1);
+}
+
+json to_json_object(const TaskSettings& settings) {
+  return {{"archive", escaped(settings.archive.string())},
+          {"threads", settings.threads},
+          {"memory_bytes", settings.memory_bytes},
+          {"timeout_seconds", settings.timeout_seconds},
+          {"retries", settings.retries},
+          {"fail_fast", settings.fail_fast},
+          {"deadline", settings.deadline}};
+}
+
+TaskSettings settings_from(const std::string& line) {
+  const json object = json::parse(line);
+  TaskSettings settings;
+  settings.archive = unescaped(object.at("archive").get<std::string>());
+  object.at("threads").get_to(settings.threads);
+  object.at("memory_bytes").get_to(settings.memory_bytes);
+  object.at("timeout_seconds").get_to(settings.timeout_seconds);
+  object.at("retries").get_to(settings.retries);
+  object.at("fail_fast").get_to(settings.fail_fast);
+  object.at("deadline").get_to(settings.deadline);
+  return settings;
+}
+
+JobReply reply_of(const JobOutcome& outcome) {
+  JobReply reply{.kind = JobReply::Kind::kWorked,
+                 .error = outcome.error,
+                 .result = outcome.result,
+                 .cpu_seconds = outcome.cpu_seconds,
+                 .peak_bytes = outcome.peak_bytes};
+  if (outcome.state == JobState::kFailed || outcome.state == JobState::kSkipped)
+    reply.kind = JobReply::Kind::kFailed;
+  if (outcome.state == JobState::kDone || outcome.state == JobState::kUpToDate)
+    reply.kind = JobReply::Kind::kDone;
+  return reply;
+}
+
+JobOutcome outcome_of(JobReply reply) {
+  JobOutcome outcome{.state = JobState::kNotRun,
+                     .error = std::move(reply.error),
+                     .result = std::move(reply.result),
+                     .cpu_seconds = reply.cpu_seconds,
+                     .peak_bytes = reply.peak_bytes};
+  if (reply.kind == JobReply::Kind::kDone) outcome.state = JobState::kDone;
+  if (reply.kind == JobReply::Kind::kFailed) outcome.state = JobState::kFailed;
+  return outcome;
+}
+
+}  // namespace
+
+std::vector<std::vector<std::size_t>> share_out(std::span<const double> seconds, int per_task) {
+  std::vector<std::size_t> order(seconds.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater(), [&](std::size_t job) { return seconds[job]; });
+  if (per_task > 0) {
+    std::vector<std::vector<std::size_t>> tasks;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      if (i % static_cast<std::size_t>(per_task) == 0) tasks.emplace_back();
+      tasks.back().push_back(order[i]);
+    }
+    return tasks;
+  }
+  for (double longest = kTaskSeconds;; longest *= 1.5) {
+    auto tasks = filled(order, seconds, longest);
+    if (tasks.size() <= kMostTasks) return tasks;
+  }
+}
+
+std::string task_list_text(const TaskSettings& settings,
+                           const std::vector<std::vector<JobRequest>>& tasks) {
+  std::string text = to_json_object(settings).dump() + '\n';
+  for (std::size_t number = 0; number < tasks.size(); ++number)
+    for (const JobRequest& job : tasks[number])
+      text += with_front(head_of(static_cast<int>(number)), to_line(job)) + '\n';
+  return text;
+}
+
+Task read_task(const fs::path& list, int number) {
+  constexpr const char* kRemedy = "run semigeo again: it makes another list";
+  std::ifstream stream(list);
+  if (!stream) throw io::Error(list, "", "cannot be read", kRemedy);
+  Task task;
+  std::string line;
+  int place = 1;
+  try {
+    std::getline(stream, line);
+    task.settings = settings_from(line);
+    // The lines of a task stand together.
+    const std::string head = head_of(number);
+    while (std::getline(stream, line)) {
+      ++place;
+      if (line.starts_with(head)) {
+        task.jobs.push_back(job_request_from(line));
+      } else if (!task.jobs.empty()) {
+        break;
+      }
+    }
+  } catch (const std::exception& e) {
+    throw io::Error(list, "line " + std::to_string(place), e.what(), kRemedy);
+  }
+  if (task.jobs.empty())
+    throw io::Error(list, "", "has no task " + std::to_string(number), kRemedy);
+  return task;
+}
+
+fs::path results_of(const fs::path& list, int number) {
+  return list.parent_path() / "results" / (std::to_string(number) + ".jsonl");
+}
+
+fs::path log_of_task(const fs::path& list, int number) {
+  return list.parent_path() / ("task-" + std::to_string(number) + ".log");
+}
+
+std::string results_text(const TaskResults& results) {
+  std::string text;
+  for (const auto& [job, outcome] : results) {
+    const std::string front = json{
+        {"job", escaped(job)},
+        {"seconds", outcome.seconds},
+        {"threads", outcome.threads},
+        {"attempts",
+         outcome.attempts}}.dump();
+    text += with_front(front.substr(0, front.size() - 1) + ',', to_line(reply_of(outcome))) + '\n';
+  }
+  return text;
+}
+
+TaskResults read_results(const fs::path& file) {
+  TaskResults results;
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);) {
+    try {
+      JobOutcome outcome = outcome_of(job_reply_from(line));
+      const json object = json::parse(line);
+      object.at("seconds").get_to(outcome.seconds);
+      object.at("threads").get_to(outcome.threads);
+      object.at("attempts").get_to(outcome.attempts);
+      results[unescaped(object.at("job").get<std::string>())] = std::move(outcome);
+    } catch (const std::exception&) {
+      continue;  // the output itself will tell
+    }
+  }
+  return results;
+}
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,239 @@
+#include "jobs/archive/find_scans.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+
+#include "io/files/error.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FindScansTest : public testing::Test {
+ protected:
+  /// An empty file; finding does not look inside.
+  fs::path add(const fs::path& file) {
+    fs::create_directories((folder_ / file).parent_path());
+    std::ofstream(folder_ / file).flush();
+    return folder_ / file;
+  }
+  std::vector<FoundScan> find(const std::vector<fs::path>& inputs) {
+    return find_scans(inputs, folder_ / "archive");
+  }
+  std::vector<std::string> names(const std::vector<fs::path>& inputs) {
+    std::vector<std::string> result;
+    for (const FoundScan& scan : find(inputs)) result.push_back(scan.name);
+    return result;
+  }
+
+  tests::TemporaryFolder folder_;
+};
+
+using Names = std::vector<std::string>;
+
+TEST_F(FindScansTest, ScenesMayBeDatasets) {
+  add("scenes/a.ply");
+  add("scenes/b.vtkhdf");
+  add("scenes/b.xdmf");
+  const fs::path archive = add("scenes/archive/scans/c.ply.vtkhdf").parent_path().parent_path();
+  const auto scenes = [&](const fs::path& input) {
+    Names result;
+    for (const FoundScan& scene : find_scenes({input}, {folder_ / "other", archive}))
+      result.push_back(scene.name);
+    return result;
+  };
+  EXPECT_EQ(scenes(folder_ / "scenes"), (Names{"a.ply", "b.vtkhdf"}));
+  EXPECT_EQ(scenes(archive), (Names{"scans__c.ply.vtkhdf"}));
+  EXPECT_EQ(scenes(archive / "scans/c.ply.vtkhdf"), (Names{"c.ply.vtkhdf"}));
+  EXPECT_THROW(scenes(folder_ / "scenes/b.xdmf"), io::Error);
+  EXPECT_EQ(names({folder_ / "scenes"}), (Names{"a.ply"}));
+  EXPECT_THROW(find({folder_ / "scenes/b.vtkhdf"}), io::Error);
+}
+
+TEST_F(FindScansTest, SearchesFoldersForScansOfEveryFormat) {
+  for (const char* file : {"in/b.obj", "in/a.ply", "in/deep/er/c.off", "in/d.STL", "in/e.stl.gz",
+                           "in/f.Ply.GZ", "in/notes.txt", "in/g.ply.bak", "in/h.gz", "in/ply"})
+    add(file);
+  EXPECT_EQ(names({folder_ / "in"}),
+            (Names{"a.ply", "b.obj", "d.STL", "deep__er__c.off", "e.stl.gz", "f.Ply.GZ"}));
+}
+
+TEST_F(FindScansTest, TheOrderIsThatOfNamesWhateverTheFileSystemSays) {
+  for (const char* file : {"in/z.ply", "in/b/z.ply", "in/m.ply", "in/b/a.ply", "in/a.ply"})
+    add(file);
+  EXPECT_EQ(names({folder_ / "in"}), (Names{"a.ply", "b__a.ply", "b__z.ply", "m.ply", "z.ply"}));
+}
+
+TEST_F(FindScansTest, PassesOverHiddenThingsAndTheArchive) {
+  for (const char* file : {"in/a.ply", "in/.b.ply", "in/.git/c.ply", "in/x/.y/d.ply"}) add(file);
+  add("archive/scans/e.ply");
+  EXPECT_EQ(names({folder_ / "in"}), Names{"a.ply"});
+  EXPECT_EQ(names({folder_.path()}), Names{"in__a.ply"});
+  EXPECT_EQ(find_scans({folder_.path()}, folder_ / "in" / ".." / "archive").size(), 1u);
+}
+
+TEST_F(FindScansTest, FoldersMayBeNamedLikeScans) {
+  add("in/folder.ply/a.ply");
+  EXPECT_EQ(names({folder_ / "in"}), Names{"folder.ply__a.ply"});
+}
+
+TEST_F(FindScansTest, LinksToFoldersAreNotFollowed) {
+  add("in/a/x.ply");
+  add("elsewhere/y.ply");
+  fs::create_directory_symlink(folder_ / "in", folder_ / "in/a/up");
+  fs::create_directory_symlink(folder_ / "elsewhere", folder_ / "in/there");
+  EXPECT_EQ(names({folder_ / "in"}), Names{"a__x.ply"});
+  // A link that the user names is meant.
+  EXPECT_EQ(names({folder_ / "in/there"}), Names{"y.ply"});
+}
+
+TEST_F(FindScansTest, LinksToScansAreScansOnce) {
+  const fs::path real = add("in/real.ply");
+  fs::create_symlink(real, folder_ / "in/z.ply");
+  EXPECT_EQ(names({folder_ / "in"}), Names{"real.ply"});
+}
+
+// Only its own job may fail, later and by name.
+TEST_F(FindScansTest, LinksThatLeadNowhereDoNotHideTheOthers) {
+  add("in/good.ply");
+  fs::create_symlink("b.ply", folder_ / "in/a.ply");
+  fs::create_symlink("a.ply", folder_ / "in/b.ply");
+  fs::create_symlink("gone", folder_ / "in/dangling.ply");
+  EXPECT_EQ(names({folder_ / "in"}), (Names{"a.ply", "b.ply", "dangling.ply", "good.ply"}));
+}
+
+TEST_F(FindScansTest, AScanNamedTwiceIsOneScan) {
+  add("in/a.ply");
+  add("in/b/c.ply");
+  EXPECT_EQ(names({folder_ / "in", folder_ / "in/a.ply", folder_ / "in/b",
+                   folder_ / "in/b/../a.ply", folder_ / "in"}),
+            (Names{"a.ply", "b__c.ply"}));
+}
+
+TEST_F(FindScansTest, TheWayAFolderIsWrittenDoesNotMatter) {
+  add("in/b/c.ply");
+  for (const char* way : {"in", "in/", "in/.", "in/b/..", "./in"})
+    EXPECT_EQ(names({folder_ / way}), Names{"b__c.ply"}) << way;
+}
+
+TEST_F(FindScansTest, NamesAreSafeWhateverThePath) {
+  const std::string parts[] = {"Krug Nº 7",   "spaces in it", "a..b", "..hidden..", "new\nline",
+                               "back\\slash", "quote'\"",     "-x",   "%41",        "\xff\xfe",
+                               "__",          "a__b",         "*?",   "~",          "日本"};
+  for (const auto& part : parts) add("in/d/" + part + ".ply");
+  for (const auto& part : parts)
+    if (!part.starts_with('.')) add("in/" + part + "/x.ply");
+  const auto found = names({folder_ / "in"});
+  EXPECT_EQ(found.size(), 14u + 14u);
+  for (const std::string& name : found) {
+    EXPECT_TRUE(std::ranges::all_of(name, [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+             c == '.' || c == '-' || c == '_';
+    })) << name;
+    EXPECT_FALSE(name.starts_with('.')) << name;
+  }
+  EXPECT_EQ(std::set(found.begin(), found.end()).size(), found.size());
+}
+
+TEST_F(FindScansTest, HiddenScansThatTheUserNamesGetVisibleNames) {
+  add(".a.ply");
+  const auto found = names({folder_ / ".a.ply"});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_FALSE(found[0].starts_with('.')) << found[0];
+}
+
+TEST_F(FindScansTest, NamesThatCouldBeMisreadEndInAHash) {
+  for (const char* file : {"in/a/b.ply", "in/a__b.ply", "in/a b.ply", "in/a_b.ply", "in/a/_b.ply",
+                           "in/a_/b.ply", "in/a/_/b.ply"})
+    add(file);
+  const auto found = names({folder_ / "in"});
+  EXPECT_EQ(std::set(found.begin(), found.end()).size(), 7u);
+  EXPECT_EQ(std::ranges::count(found, "a__b.ply"), 1);
+  EXPECT_EQ(std::ranges::count(found, "a_b.ply"), 1);
+}
+
+// Or adding one scan would rename, and compute again, another.
+TEST_F(FindScansTest, ANameDependsOnThePathAlone) {
+  const char* const files[] = {"in/a_/b.ply", "in/a/_b.ply", "in/a__b.ply", "in/a b.ply",
+                               "in/a/b.ply"};
+  for (const char* file : files) add(file);
+  const auto together = find({folder_ / "in"});
+  ASSERT_EQ(together.size(), 5u);
+  for (const FoundScan& scan : together) {
+    fs::remove_all(folder_ / "in");
+    add(scan.input.lexically_relative(folder_.path()));
+    EXPECT_EQ(names({folder_ / "in"}), Names{scan.name}) << scan.input;
+  }
+}
+
+TEST_F(FindScansTest, LongPathsGetShortNames) {
+  std::string path = "in";
+  for (int i = 0; i < 20; ++i) path += "/" + std::string(30, static_cast<char>('a' + i));
+  add(path + "/x.ply");
+  add(path.replace(3, 1, "b") + "/x.ply");  // differs in what is cut off
+  const auto found = names({folder_ / "in"});
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_NE(found[0], found[1]);
+  for (const auto& name : found) EXPECT_LT(name.size(), 200u);
+}
+
+TEST_F(FindScansTest, SaysWhereAScanWasFoundAndWhichFileItIs) {
+  const fs::path real = add("in/deep/a b.ply");
+  fs::create_symlink(real, folder_ / "link.ply");
+  const auto in_folder = find({folder_ / "in/../in"});
+  ASSERT_EQ(in_folder.size(), 1u);
+  EXPECT_EQ(in_folder[0].relative, "deep/a b.ply");
+  EXPECT_EQ(in_folder[0].file, fs::canonical(real));
+  const auto alone = find({folder_ / "link.ply"});
+  ASSERT_EQ(alone.size(), 1u);
+  EXPECT_EQ(alone[0].relative, "link.ply");
+  EXPECT_EQ(alone[0].file, fs::canonical(real));
+}
+
+// One who may not look into a folder must not hide the others.
+TEST_F(FindScansTest, AFolderThatCannotBeSearchedIsNamedAndTheOthersAreSearched) {
+  for (const char* file : {"in/a.ply", "in/locked/b.ply", "in/z/c.ply"}) add(file);
+  fs::permissions(folder_ / "in/locked", fs::perms::none);
+  fs::permissions(folder_.path(), fs::perms(0755));
+  const bool root = geteuid() == 0;
+  if (root) ASSERT_EQ(seteuid(65534), 0);
+  const auto found = find({folder_ / "in"});
+  EXPECT_THROW(find({folder_ / "in/locked"}), io::Error);
+  if (root) ASSERT_EQ(seteuid(0), 0);
+  fs::permissions(folder_ / "in/locked", fs::perms::owner_all);
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].name, "a.ply");
+  EXPECT_EQ(found[1].name, "z__c.ply");
+  EXPECT_TRUE(found[0].error.empty());
+  EXPECT_EQ(found[2].input, folder_ / "in/locked");
+  EXPECT_TRUE(found[2].error.starts_with((folder_ / "in/locked").string() + ": cannot be searched"))
+      << found[2].error;
+}
+
+TEST_F(FindScansTest, InputsThatAreNoScansAreErrorsThatNameThem) {
+  add("in/a.ply");
+  add("in/notes.txt");
+  for (const char* input : {"in/missing.ply", "missing", "in/notes.txt", "in/a.ply/b.ply"}) {
+    try {
+      find({folder_ / "in/a.ply", folder_ / input});
+      ADD_FAILURE() << input << " was accepted";
+    } catch (const io::Error& error) {
+      EXPECT_EQ(error.file(), folder_ / input);
+      EXPECT_FALSE(error.remedy().empty());
+    }
+  }
+}
+
+TEST_F(FindScansTest, AnEmptyFolderHoldsNothing) {
+  fs::create_directories(folder_ / "in");
+  EXPECT_TRUE(find({folder_ / "in"}).empty());
+}
+
+}  // namespace
+}  // namespace semigeo::jobs

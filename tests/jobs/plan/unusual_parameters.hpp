@@ -1,0 +1,27 @@
+#pragma once
+
+#include "jobs/plan/config.hpp"
+
+namespace semigeo::jobs {
+
+/// Each parameter is another than by default.
+inline SurfaceParameters unusual_parameters() {
+  return {.levels = 3,
+          .preparation = {.fill_holes = 40,
+                          .decimate = 0.25,
+                          .decimate_in_length_units = true,
+                          .target_vertices = 1993},
+          .evolution = {.curved = false,
+                        .coordinates = kernels::Coordinates::polar,
+                        .schedule = Schedule::octaves,
+                        .rescale = Rescale::edges,
+                        .remesh = false,
+                        .principal = true,
+                        .step_factor = 0.1},
+          .features = {.radius = 0, .min_completeness = 0.75},
+          .recognition_level = 2,
+          .compression = io::Compression::none,
+          .length_unit = "m\"m"};
+}
+
+}  // namespace semigeo::jobs

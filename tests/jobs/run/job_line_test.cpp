@@ -1,0 +1,264 @@
+#include "jobs/run/job_line.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <stdexcept>
+#include <type_traits>
+#include <vector>
+
+#include "io/files/utf8.hpp"
+
+#include "tests/jobs/plan/unusual_parameters.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+// Every field of what is sent, by position: one more or less in a struct, and this does not compile
+// until it is listed here, and not pass until it is sent.
+
+template <typename Visit, typename... Fields>
+void visit_each(const Visit& visit, Fields&... fields) {
+  (visit(fields), ...);
+}
+
+template <typename Result, typename Visit>
+void every_field_of_result(Result& result, const Visit& visit) {
+  auto& [format, vertices, triangles, parts, levels, repairs, preparation, remeshed, vanished] =
+      result;
+  visit_each(visit, format, vertices, triangles, parts, levels, vanished);
+  {
+    auto& [a, b, c, d, e, f, g] = repairs;
+    visit_each(visit, a, b, c, d, e, f, g);
+  }
+  {
+    auto& [holes, a, b, c, d, tolerance, distance] = preparation;
+    visit_each(visit, a, b, c, d, tolerance);
+    auto& [loops, filled, outer, too_long, unsplittable] = holes;
+    visit_each(visit, loops, filled, outer, too_long, unsplittable);
+    auto& [maximum, sum, count] = distance;
+    visit_each(visit, maximum, sum, count);
+  }
+  {
+    auto& [a, b, c, d, e, f, g, h] = remeshed;
+    visit_each(visit, a, b, c, d, e, f, g, h);
+  }
+}
+
+template <typename Request, typename Visit>
+void every_field_of_request(Request& request, const Visit& visit) {
+  auto& [job, parameters, sidecar_only, threads, memory_bytes, log] = request;
+  visit_each(visit, sidecar_only, threads, memory_bytes, log);
+  {
+    auto& [kind, name, input, output, key, input_name, input_xxh3, models, shapes, library,
+           library_digest, partitions, buffer_bytes] = job;
+    visit_each(visit, name, input, output, key, input_name, input_xxh3, models, shapes.first,
+               shapes.end, library, library_digest, partitions, buffer_bytes);
+  }
+}
+
+/// A value that no other field has.
+class Distinct {
+ public:
+  template <typename Field>
+  void operator()(Field& field) const {
+    ++count_;
+    if constexpr (std::is_same_v<Field, bool>) {
+      field = true;
+    } else if constexpr (std::is_integral_v<Field>) {
+      field = static_cast<Field>(1000 + count_);
+      if constexpr (sizeof(Field) == 8) field <<= 40;  // more than a double or an int holds
+      field += static_cast<Field>(count_);
+    } else if constexpr (std::is_floating_point_v<Field>) {
+      field = 1.0 / (2.0 + count_);
+    } else if constexpr (std::is_same_v<Field, std::vector<std::string>>) {
+      field = {"b%\xff", "text " + std::to_string(count_)};
+    } else {
+      field = "text " + std::to_string(count_);
+    }
+  }
+
+ private:
+  mutable int count_ = 0;
+};
+
+/// All values, to be compared and to be printed.
+class Listed {
+ public:
+  template <typename Field>
+  void operator()(const Field& field) const {
+    std::ostringstream text;
+    text.precision(17);
+    if constexpr (std::is_same_v<Field, std::vector<std::string>>) {
+      for (const std::string& one : field) text << one << '\n';
+    } else {
+      text << field;
+    }
+    values.push_back(text.str());
+  }
+  mutable std::vector<std::string> values;
+};
+
+std::vector<std::string> values_of(const SurfaceJobResult& result) {
+  Listed listed;
+  every_field_of_result(result, listed);
+  return listed.values;
+}
+
+std::vector<std::string> values_of(const JobRequest& request) {
+  Listed listed;
+  every_field_of_request(request, listed);
+  listed.values.emplace_back(name_of(request.job.kind));
+  listed.values.push_back(to_json(request.parameters.surface));
+  listed.values.push_back(to_json(request.parameters.recognition));
+  listed.values.push_back(to_json(request.parameters.search));
+  return listed.values;
+}
+
+TEST(JobLineTest, EveryFieldOfARequestArrives) {
+  JobRequest request;
+  every_field_of_request(request, Distinct());
+  request.parameters = {.surface = unusual_parameters(),
+                        .recognition = {.levels = 7,
+                                        .most_features = 17,
+                                        .torsion = false,
+                                        .samples = 170,
+                                        .least_reach = 0.17},
+                        .search = {.method = RecognitionMethod::kThesis, .min_score = 0.123}};
+  request.job.kind = JobKind::kPartition;
+  for (const JobRequest& sent : {request, JobRequest{}}) {
+    const std::string line = to_line(sent);
+    EXPECT_EQ(line.find('\n'), std::string::npos);
+    EXPECT_EQ(values_of(job_request_from(line)), values_of(sent));
+  }
+}
+
+TEST(JobLineTest, PathsAreBytes) {
+  JobRequest request;
+  request.job.input = "/scans/Krug N\u00ba \xff\xfe/100%41\n.ply";
+  request.job.output = "/archive \xc2/scans/a%.vtkhdf";
+  request.log = "/archive \xc2/logs/\"\\\x01.log";
+  const std::string line = to_line(request);
+  EXPECT_TRUE(io::is_utf8(line));
+  EXPECT_EQ(line.find('\n'), std::string::npos);
+  const JobRequest read = job_request_from(line);
+  EXPECT_EQ(read.job.input.native(), request.job.input.native());
+  EXPECT_EQ(read.job.output.native(), request.job.output.native());
+  EXPECT_EQ(read.log.native(), request.log.native());
+}
+
+TEST(JobLineTest, EveryFieldOfAResultArrives) {
+  SurfaceJobResult filled;
+  every_field_of_result(filled, Distinct());
+  for (const SurfaceJobResult& result : {filled, SurfaceJobResult{}}) {
+    const JobReply sent = {.kind = JobReply::Kind::kDone,
+                           .worked = 123,
+                           .error = {},
+                           .result = result,
+                           .cpu_seconds = 1.0 / 3,
+                           .peak_bytes = 1e12 + 1};
+    const std::string line = to_line(sent);
+    EXPECT_EQ(line.find('\n'), std::string::npos);
+    const auto [kind, worked, error, read, cpu_seconds, peak_bytes] = job_reply_from(line);
+    EXPECT_EQ(kind, JobReply::Kind::kDone);
+    EXPECT_EQ(worked, 123);
+    EXPECT_EQ(error, "");
+    EXPECT_EQ(cpu_seconds, 1.0 / 3);
+    EXPECT_EQ(peak_bytes, 1e12 + 1);
+    ASSERT_TRUE(std::holds_alternative<SurfaceJobResult>(read));
+    EXPECT_EQ(values_of(std::get<SurfaceJobResult>(read)), values_of(result));
+  }
+}
+
+JobResult after_a_line(const JobResult& result) {
+  return job_reply_from(to_line({.kind = JobReply::Kind::kDone, .error = {}, .result = result}))
+      .result;
+}
+
+TEST(JobLineTest, ResultsOfEveryKindArrive) {
+  const auto triplets = after_a_line(TripletsJobResult{.features = 1, .samples = 2, .triplets = 3});
+  const auto [features, samples, count] = std::get<TripletsJobResult>(triplets);
+  EXPECT_EQ(std::vector({features, samples, count}), (std::vector<std::int64_t>{1, 2, 3}));
+  const auto partition = after_a_line(PartitionJobResult{.postings = std::int64_t{1} << 40});
+  EXPECT_EQ(std::get<PartitionJobResult>(partition).postings, std::int64_t{1} << 40);
+  const auto library = after_a_line(LibraryJobResult{.models = 1, .postings = 2, .digest = "d"});
+  const auto [models, postings, digest] = std::get<LibraryJobResult>(library);
+  EXPECT_EQ(std::vector({models, postings}), (std::vector<std::int64_t>{1, 2}));
+  EXPECT_EQ(digest, "d");
+  const auto recognised =
+      after_a_line(RecogniseJobResult{.features = 1, .triplets = 2, .objects = 3});
+  const auto [found, looked_up, objects] = std::get<RecogniseJobResult>(recognised);
+  EXPECT_EQ(std::vector({found, looked_up, objects}), (std::vector<std::int64_t>{1, 2, 3}));
+}
+
+TEST(JobLineTest, AJobMayBeDoneWithoutADataset) {
+  const JobReply read =
+      job_reply_from(to_line({.kind = JobReply::Kind::kDone, .error = {}, .result = {}}));
+  EXPECT_EQ(read.kind, JobReply::Kind::kDone);
+  EXPECT_EQ(read.result.index(), 0u);
+}
+
+TEST(JobLineTest, WorkIsNoOutcome) {
+  const JobReply read = job_reply_from(to_line({.kind = JobReply::Kind::kWorked,
+                                                .worked = std::int64_t{1} << 60,
+                                                .error = {},
+                                                .result = {}}));
+  EXPECT_EQ(read.kind, JobReply::Kind::kWorked);
+  EXPECT_EQ(read.worked, std::int64_t{1} << 60);
+}
+
+TEST(JobLineTest, AFailureSaysWhyWhateverTheReason) {
+  const std::string name = "/Krug N\u00ba/a.ply: is \"no\" scan;\ntry \\ another";
+  const JobReply read = job_reply_from(to_line({.kind = JobReply::Kind::kFailed,
+                                                .worked = 7,
+                                                .error = name,
+                                                .result = {},
+                                                .cpu_seconds = 0.5,
+                                                .peak_bytes = 4096}));
+  EXPECT_EQ(read.kind, JobReply::Kind::kFailed);
+  EXPECT_EQ(read.worked, 7);
+  EXPECT_EQ(read.error, name);
+  EXPECT_EQ(read.cpu_seconds, 0.5);
+  EXPECT_EQ(read.peak_bytes, 4096);
+  EXPECT_EQ(read.result.index(), 0u);
+  // An error that names a file is what the file system says, and that may be no text.
+  const JobReply bytes = job_reply_from(
+      to_line({.kind = JobReply::Kind::kFailed, .error = "/a\xff: is no scan", .result = {}}));
+  EXPECT_EQ(bytes.error, "/a\ufffd: is no scan");
+}
+
+TEST(JobLineTest, ALineThatIsNoneIsRefused) {
+  for (const std::string line :
+       {"", "{", "null", "[]", "7", "\"done\"", "{}", "\xff", "{\"worked\":\"much\"}",
+        "{\"done\":null}", "{\"failed\":\"x\"}", "{\"done\":{\"format\":\"PLY\"},\"worked\":1}"}) {
+    EXPECT_THROW(job_request_from(line), std::runtime_error) << line;
+    EXPECT_THROW(job_reply_from(line), std::runtime_error) << line;
+  }
+  // Each field is asked for.
+  SurfaceJobResult result;
+  const std::string request = to_line(JobRequest{});
+  const std::string done = to_line({.kind = JobReply::Kind::kDone, .error = {}, .result = result});
+  const auto renamed = [](std::string line, std::size_t quote) {
+    return line.insert(quote + 1, "not ");
+  };
+  int names = 0;
+  for (std::size_t at = 0; (at = request.find('"', at)) != std::string::npos; ++at) {
+    const std::size_t end = request.find('"', at + 1);
+    if (request[end + 1] == ':') {
+      EXPECT_THROW(job_request_from(renamed(request, at)), std::runtime_error)
+          << request.substr(at);
+      ++names;
+    }
+    at = end;
+  }
+  EXPECT_GT(names, 10);
+  for (std::size_t at = 0; (at = done.find('"', at)) != std::string::npos; ++at) {
+    const std::size_t end = done.find('"', at + 1);
+    if (done[end + 1] == ':' && done.compare(at, 6, "\"done\"") != 0)
+      EXPECT_THROW(job_reply_from(renamed(done, at)), std::runtime_error) << done.substr(at);
+    at = end;
+  }
+}
+
+}  // namespace
+}  // namespace semigeo::jobs

@@ -1,0 +1,132 @@
+#include "jobs/slurm/task_list.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <numeric>
+
+#include "io/files/error.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+using Tasks = std::vector<std::vector<std::size_t>>;
+
+TEST(TaskListTest, TasksLastFiveMinutesAndTheLongestJobsComeFirst) {
+  EXPECT_EQ(share_out(std::vector<double>{100, 1000, 50, 250, 60}, 0),
+            (Tasks{{1}, {3}, {0, 4, 2}}));
+  EXPECT_EQ(share_out(std::vector<double>{1, 2, 3}, 0), (Tasks{{2, 1, 0}}));
+  EXPECT_TRUE(share_out({}, 0).empty());
+}
+
+TEST(TaskListTest, AsManyJobsInATaskAsAskedFor) {
+  EXPECT_EQ(share_out(std::vector<double>{1, 3, 2, 3, 9}, 2), (Tasks{{4, 1}, {3, 2}, {0}}));
+  EXPECT_EQ(share_out(std::vector<double>{1000, 1000}, 5), (Tasks{{0, 1}}));
+}
+
+TEST(TaskListTest, AreAtMostTenThousandHoweverLong) {
+  const std::vector<double> seconds(30'000, 290);
+  const Tasks tasks = share_out(seconds, 0);
+  EXPECT_LE(tasks.size(), 10'000u);
+  EXPECT_GT(tasks.size(), 5'000u);
+  std::vector<bool> seen(seconds.size());
+  for (const auto& task : tasks)
+    for (const std::size_t job : task) {
+      EXPECT_FALSE(seen[job]);
+      seen[job] = true;
+    }
+  EXPECT_EQ(std::accumulate(seen.begin(), seen.end(), 0), 30'000);
+}
+
+JobRequest request(const std::string& name) {
+  JobRequest request;
+  request.job.name = name;
+  request.job.input = "/in/\xff" + name;
+  request.job.output = "/archive/scans/" + name + ".vtkhdf";
+  request.job.key = "key of " + name;
+  request.parameters.surface.levels = 3;
+  request.threads = 2;
+  request.log = "/archive/logs/" + name + ".log";
+  return request;
+}
+
+class TaskFileTest : public testing::Test {
+ protected:
+  fs::path write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+  tests::TemporaryFolder folder_;
+};
+
+TEST_F(TaskFileTest, ATaskFindsItsJobs) {
+  const TaskSettings settings{.archive = "/arch\xff",
+                              .threads = 2,
+                              .memory_bytes = std::uint64_t{1} << 40,
+                              .timeout_seconds = 1.5,
+                              .retries = 3,
+                              .fail_fast = true,
+                              .deadline = 1.75e9};
+  std::vector<std::vector<JobRequest>> tasks;
+  for (int i = 0; i < 12; ++i)
+    tasks.push_back({request("a" + std::to_string(i)), request("b" + std::to_string(i))});
+  const fs::path list = write("tasks.jsonl", task_list_text(settings, tasks));
+  for (const int number : {0, 1, 11}) {
+    const Task task = read_task(list, number);
+    EXPECT_EQ(task.settings, settings);
+    ASSERT_EQ(task.jobs.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i)
+      EXPECT_EQ(to_line(task.jobs[i]), to_line(tasks[static_cast<std::size_t>(number)][i]));
+  }
+}
+
+TEST_F(TaskFileTest, AListThatIsMissingOrDamagedIsAnErrorThatSaysWhere) {
+  EXPECT_THROW(read_task(folder_ / "none", 0), io::Error);
+  const std::string text = task_list_text({}, {{request("a")}, {request("b")}});
+  EXPECT_THROW(read_task(write("list", text), 2), io::Error);
+  try {
+    read_task(write("torn", text.substr(0, text.size() - 20)), 1);
+    ADD_FAILURE() << "half a line was read";
+  } catch (const io::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("line 3"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(TaskFileTest, ResultsComeBackAndDamagedLinesAreNone) {
+  TaskResults results;
+  JobOutcome& done = results["a \"quoted\""];
+  done.state = JobState::kDone;
+  SurfaceJobResult result;
+  result.vertices = 17;
+  done.result = result;
+  done.seconds = 2.5;
+  done.cpu_seconds = 2;
+  done.peak_bytes = 1e9;
+  done.threads = 2;
+  done.attempts = 1;
+  JobOutcome& failed = results["b"];
+  failed.state = JobState::kFailed;
+  failed.error = "b.ply: is no scan";
+  results["c"].state = JobState::kNotRun;
+  const std::string text = results_text(results);
+  const TaskResults read = read_results(write("results", text + "{\"name\":\"d\""));
+  ASSERT_EQ(read.size(), 3u);
+  const JobOutcome& a = read.at("a \"quoted\"");
+  EXPECT_EQ(a.state, JobState::kDone);
+  ASSERT_TRUE(std::holds_alternative<SurfaceJobResult>(a.result));
+  EXPECT_EQ(std::get<SurfaceJobResult>(a.result).vertices, 17);
+  EXPECT_EQ(a.seconds, 2.5);
+  EXPECT_EQ(a.cpu_seconds, 2);
+  EXPECT_EQ(a.peak_bytes, 1e9);
+  EXPECT_EQ(a.threads, 2);
+  EXPECT_EQ(a.attempts, 1);
+  EXPECT_EQ(read.at("b").state, JobState::kFailed);
+  EXPECT_EQ(read.at("b").error, failed.error);
+  EXPECT_EQ(read.at("c").state, JobState::kNotRun);
+  EXPECT_TRUE(read_results(folder_ / "none").empty());
+}
+
+}  // namespace
+}  // namespace semigeo::jobs
