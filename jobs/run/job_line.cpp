@@ -189,7 +189,7 @@ JobRequest job_request_from(const std::string& line) {
     object.at("library_digest").get_to(job.library_digest);
     object.at("partitions").get_to(job.partitions);
     object.at("buffer_bytes").get_to(job.buffer_bytes);
-    request.parameters.surface = parameters_from_json(object.at("parameters").dump());
+    request.parameters.surface = surface_parameters_from_json(object.at("parameters").dump());
     request.parameters.recognition =
         recognition_parameters_from_json(object.at("recognition").dump());
     request.parameters.search = search_parameters_from_json(object.at("search").dump());

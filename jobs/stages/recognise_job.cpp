@@ -8,6 +8,7 @@
 #include "io/files/file_digest.hpp"
 #include "io/scans/scan_reader.hpp"
 #include "jobs/stages/recognised_file.hpp"
+#include "jobs/stages/recognition_features.hpp"
 #include "jobs/stages/scan_surface.hpp"
 #include "jobs/stages/thesis_recognition.hpp"
 

@@ -6,7 +6,8 @@
 
 #include "engine/run_context.hpp"
 #include "io/library/hash_library.hpp"
-#include "jobs/plan/config.hpp"
+#include "jobs/stages/recognition_parameters.hpp"
+#include "jobs/stages/search_parameters.hpp"
 
 namespace semigeo::jobs {
 

@@ -6,7 +6,7 @@
 
 #include "engine/run_context.hpp"
 #include "io/library/hash_library.hpp"
-#include "jobs/stages/recognition_features.hpp"
+#include "kernels/recognition/recognition_model.hpp"
 #include "kernels/recognition/similarity.hpp"
 
 namespace semigeo::jobs {

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "io/library/hash_library.hpp"
-#include "jobs/plan/config.hpp"
 #include "jobs/stages/recognise_scene.hpp"
+#include "jobs/stages/search_parameters.hpp"
 
 namespace semigeo::jobs {
 

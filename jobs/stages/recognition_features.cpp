@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "jobs/plan/config.hpp"
 #include "jobs/stages/evolving_surface.hpp"
 #include "jobs/stages/level_features.hpp"
+#include "jobs/stages/surface_parameters.hpp"
 #include "kernels/recognition/surface_samples.hpp"
 #include "kernels/surface/vertex_order.hpp"
 
@@ -132,7 +132,7 @@ void evolve(const kernels::Surface& surface, const RecognitionParameters& parame
 /// Whether features of a dataset are those that its surface would be evolved anew for.
 bool has_octaves(const io::Dataset& dataset) {
   try {
-    const SurfaceParameters made = parameters_from_json(dataset.header().parameters_json);
+    const SurfaceParameters made = surface_parameters_from_json(dataset.header().parameters_json);
     SurfaceParameters wanted = made;
     wanted.evolution = kOctaves;
     wanted.evolution.rescale = made.evolution.rescale;  // octaves are never rescaled
@@ -160,13 +160,6 @@ Triangles triangles_of(const std::vector<std::int64_t>& corners) {
 }
 
 }  // namespace
-
-RecognitionParameters scene_parameters(const RecognitionParameters& of_models) {
-  RecognitionParameters parameters = of_models;
-  parameters.samples = 5 * of_models.samples;
-  parameters.rim = true;
-  return parameters;
-}
 
 kernels::RecognitionModel recognition_model(const kernels::BuiltSurface& built,
                                             const RecognitionParameters& parameters,

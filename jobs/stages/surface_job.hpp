@@ -5,9 +5,9 @@
 #include <string>
 
 #include "engine/run_context.hpp"
-#include "jobs/plan/config.hpp"
 #include "jobs/stages/prepare_surface.hpp"
 #include "jobs/stages/scan_surface.hpp"
+#include "jobs/stages/surface_parameters.hpp"
 #include "kernels/repair/remeshing.hpp"
 #include "kernels/repair/surface_builder.hpp"
 

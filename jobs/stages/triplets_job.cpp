@@ -2,6 +2,7 @@
 
 #include "io/dataset/dataset.hpp"
 #include "io/library/triplet_run.hpp"
+#include "jobs/stages/recognition_features.hpp"
 #include "kernels/recognition/triplet.hpp"
 
 namespace semigeo::jobs {

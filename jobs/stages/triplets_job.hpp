@@ -6,7 +6,7 @@
 #include <string>
 
 #include "engine/run_context.hpp"
-#include "jobs/stages/recognition_features.hpp"
+#include "jobs/stages/recognition_parameters.hpp"
 
 namespace semigeo::jobs {
 

@@ -9,7 +9,7 @@
 
 #include "io/files/utf8.hpp"
 
-#include "tests/jobs/plan/unusual_parameters.hpp"
+#include "tests/jobs/stages/unusual_parameters.hpp"
 
 namespace semigeo::jobs {
 namespace {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <random>
 
+#include "jobs/stages/recognition_features.hpp"
 #include "kernels/repair/surface_builder.hpp"
 #include "tests/io/library/sample_library.hpp"
 #include "tests/support/random_similarity.hpp"

@@ -9,6 +9,7 @@
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
 #include "io/library/triplet_run.hpp"
+#include "jobs/stages/recognition_features.hpp"
 #include "jobs/stages/surface_job.hpp"
 #include "tests/support/scan_file.hpp"
 #include "tests/support/shapes.hpp"

@@ -1,17 +1,18 @@
-#include "jobs/plan/config.hpp"
+#include "jobs/stages/surface_parameters.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <stdexcept>
 
-#include "tests/jobs/plan/unusual_parameters.hpp"
+#include "tests/jobs/stages/unusual_parameters.hpp"
 
 namespace semigeo::jobs {
 namespace {
 
-TEST(ConfigTest, ParametersAreJsonWithSortedKeys) {
+TEST(SurfaceParametersTest, AreJsonWithSortedKeys) {
   EXPECT_EQ(
       to_json(SurfaceParameters{}),
       R"({"compression":"deflate","coordinates":"semigeodesic","decimate":"0.0 edges",)"
@@ -26,12 +27,12 @@ TEST(ConfigTest, ParametersAreJsonWithSortedKeys) {
       R"("length_unit":"m\"m","level":2,"levels":3,"principal":true,)"
       R"("remesh":false,"rescale":"edges","schedule":"octaves","step":0.1,"surface":"flat","target_vertices":1993})");
   for (const SurfaceParameters& parameters : {SurfaceParameters{}, other})
-    EXPECT_EQ(to_json(parameters_from_json(to_json(parameters))), to_json(parameters));
+    EXPECT_EQ(to_json(surface_parameters_from_json(to_json(parameters))), to_json(parameters));
   for (const char* text : {"", "{}", "[]", R"({"levels":8})"})
-    EXPECT_THROW(parameters_from_json(text), std::runtime_error) << text;
+    EXPECT_THROW(surface_parameters_from_json(text), std::runtime_error) << text;
 }
 
-TEST(ConfigTest, EveryParameterShows) {
+TEST(SurfaceParametersTest, EachOfThemShows) {
   const SurfaceParameters plain;
   std::set<std::string> texts = {to_json(plain)};
   for (const int field : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}) {
@@ -52,30 +53,6 @@ TEST(ConfigTest, EveryParameterShows) {
     EXPECT_TRUE(texts.insert(to_json(changed)).second) << "field " << field;
     EXPECT_TRUE(nlohmann::json::accept(to_json(changed)));
   }
-}
-
-TEST(ConfigTest, RecognitionParametersAreReadBack) {
-  const RecognitionParameters unusual = {
-      .levels = 7, .most_features = 17, .torsion = false, .samples = 170, .least_reach = 1.0 / 3};
-  const RecognitionParameters read = recognition_parameters_from_json(to_json(unusual));
-  EXPECT_EQ(read.levels, unusual.levels);
-  EXPECT_EQ(read.most_features, unusual.most_features);
-  EXPECT_EQ(read.torsion, unusual.torsion);
-  EXPECT_EQ(read.samples, unusual.samples);
-  EXPECT_EQ(read.least_reach, unusual.least_reach);
-  for (const char* text : {"", "{}", "[]", R"({"levels":3})"})
-    EXPECT_THROW(recognition_parameters_from_json(text), std::runtime_error) << text;
-}
-
-TEST(ConfigTest, SearchParametersAreReadBack) {
-  for (const SearchParameters& parameters :
-       {SearchParameters{},
-        SearchParameters{.method = RecognitionMethod::kThesis, .min_score = 1.0 / 3}})
-    EXPECT_EQ(to_json(search_parameters_from_json(to_json(parameters))), to_json(parameters));
-  EXPECT_NE(to_json(SearchParameters{.method = RecognitionMethod::kThesis}),
-            to_json(SearchParameters{}));
-  for (const char* text : {"", "{}", "[]", R"({"method":"thesis"})"})
-    EXPECT_THROW(search_parameters_from_json(text), std::runtime_error) << text;
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "jobs/plan/config.hpp"
+#include "jobs/stages/surface_parameters.hpp"
 
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -50,7 +50,7 @@ std::string to_json(const SurfaceParameters& parameters) {
       .dump();
 }
 
-SurfaceParameters parameters_from_json(const std::string& text) {
+SurfaceParameters surface_parameters_from_json(const std::string& text) {
   try {
     const auto json = nlohmann::json::parse(text);
     const auto is = [&](const char* key, const char* word) { return json.at(key) == word; };
@@ -79,49 +79,6 @@ SurfaceParameters parameters_from_json(const std::string& text) {
     if (is("compression", "none")) parameters.compression = io::Compression::none;
     if (to_json(parameters) != json.dump())
       throw std::runtime_error("are no parameters of this version: " + text);
-    return parameters;
-  } catch (const nlohmann::json::exception& e) {
-    throw std::runtime_error(std::string("are no parameters: ") + e.what());
-  }
-}
-
-std::string to_json(const RecognitionParameters& parameters) {
-  return nlohmann::json{{"least_reach", parameters.least_reach},
-                        {"levels", parameters.levels},
-                        {"most_features", parameters.most_features},
-                        {"samples", parameters.samples},
-                        {"torsion", parameters.torsion}}
-      .dump();
-}
-
-RecognitionParameters recognition_parameters_from_json(const std::string& text) {
-  try {
-    const auto json = nlohmann::json::parse(text);
-    RecognitionParameters parameters;
-    json.at("least_reach").get_to(parameters.least_reach);
-    json.at("levels").get_to(parameters.levels);
-    json.at("most_features").get_to(parameters.most_features);
-    json.at("samples").get_to(parameters.samples);
-    json.at("torsion").get_to(parameters.torsion);
-    return parameters;
-  } catch (const nlohmann::json::exception& e) {
-    throw std::runtime_error(std::string("are no parameters: ") + e.what());
-  }
-}
-
-std::string to_json(const SearchParameters& parameters) {
-  const bool thesis = parameters.method == RecognitionMethod::kThesis;
-  return nlohmann::json{{"method", thesis ? "thesis" : "overlap"},
-                        {"min_score", parameters.min_score}}
-      .dump();
-}
-
-SearchParameters search_parameters_from_json(const std::string& text) {
-  try {
-    const auto json = nlohmann::json::parse(text);
-    SearchParameters parameters;
-    if (json.at("method") == "thesis") parameters.method = RecognitionMethod::kThesis;
-    json.at("min_score").get_to(parameters.min_score);
     return parameters;
   } catch (const nlohmann::json::exception& e) {
     throw std::runtime_error(std::string("are no parameters: ") + e.what());

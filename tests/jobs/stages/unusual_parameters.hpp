@@ -1,10 +1,10 @@
 #pragma once
 
-#include "jobs/plan/config.hpp"
+#include "jobs/stages/surface_parameters.hpp"
 
 namespace semigeo::jobs {
 
-/// Each parameter is another than by default.
+/// Returns parameters of which none has its default value.
 inline SurfaceParameters unusual_parameters() {
   return {.levels = 3,
           .preparation = {.fill_holes = 40,

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+
+namespace semigeo::jobs {
+
+/// Says what recognition looks at on a surface. It is part of the key of a library.
+struct RecognitionParameters {
+  int levels = 4;           ///< Number of octave levels 0, 1, ... of a coarse scan.
+  int most_features = 400;  ///< The strongest features of each level and kind are kept, so many.
+  bool torsion = true;      ///< Maxima of torsion are features, as maxima of curvature are.
+  int samples = 4000;       ///< Largest number of samples of the surface.
+  /// Fine scans get more levels, until sigma is this share of the diagonal. What another scan of
+  /// the object shows at its first level must be among them, however much coarser that scan is.
+  double least_reach = 0.015;
+  bool rim = false;  ///< Samples near the boundary are marked; libraries do not store the marks.
+};
+
+/// Returns the parameters for a scene, of which a model may be a small part.
+RecognitionParameters scene_parameters(const RecognitionParameters& of_models);
+
+/// Returns the parameters that a library depends on as JSON with sorted keys.
+std::string to_json(const RecognitionParameters& parameters);
+
+/// Reads what `to_json` returns. Throws std::runtime_error if a parameter is missing or is not of
+/// its type.
+RecognitionParameters recognition_parameters_from_json(const std::string& text);
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,24 @@
+#include "jobs/stages/recognition_parameters.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+namespace semigeo::jobs {
+namespace {
+
+TEST(RecognitionParametersTest, AreReadBack) {
+  const RecognitionParameters unusual = {
+      .levels = 7, .most_features = 17, .torsion = false, .samples = 170, .least_reach = 1.0 / 3};
+  const RecognitionParameters read = recognition_parameters_from_json(to_json(unusual));
+  EXPECT_EQ(read.levels, unusual.levels);
+  EXPECT_EQ(read.most_features, unusual.most_features);
+  EXPECT_EQ(read.torsion, unusual.torsion);
+  EXPECT_EQ(read.samples, unusual.samples);
+  EXPECT_EQ(read.least_reach, unusual.least_reach);
+  for (const char* text : {"", "{}", "[]", R"({"levels":3})"})
+    EXPECT_THROW(recognition_parameters_from_json(text), std::runtime_error) << text;
+}
+
+}  // namespace
+}  // namespace semigeo::jobs

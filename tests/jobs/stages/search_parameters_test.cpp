@@ -1,0 +1,22 @@
+#include "jobs/stages/search_parameters.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+namespace semigeo::jobs {
+namespace {
+
+TEST(SearchParametersTest, AreReadBack) {
+  for (const SearchParameters& parameters :
+       {SearchParameters{},
+        SearchParameters{.method = RecognitionMethod::kThesis, .min_score = 1.0 / 3}})
+    EXPECT_EQ(to_json(search_parameters_from_json(to_json(parameters))), to_json(parameters));
+  EXPECT_NE(to_json(SearchParameters{.method = RecognitionMethod::kThesis}),
+            to_json(SearchParameters{}));
+  for (const char* text : {"", "{}", "[]", R"({"method":"thesis"})"})
+    EXPECT_THROW(search_parameters_from_json(text), std::runtime_error) << text;
+}
+
+}  // namespace
+}  // namespace semigeo::jobs
