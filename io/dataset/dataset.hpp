@@ -19,9 +19,9 @@ struct LevelInfo : LevelAttributes {
   FeatureCounts features;
 };
 
-/// Reads a dataset (io/DATASET.md). Every failure is an Error that names the file and the object.
-/// Sizes are checked against what the file holds before anything is allocated. One thread at a
-/// time.
+/// Reads a dataset (docs/formats/dataset.md). Every failure is an Error that names the file and the
+/// object. Sizes are checked against what the file holds before anything is allocated. One thread
+/// at a time.
 class Dataset {
  public:
   /// Opens read-only; refuses other formats, versions of the future, and unfinished files.

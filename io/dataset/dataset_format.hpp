@@ -9,7 +9,7 @@
 
 namespace semigeo::io {
 
-// What the writer and the reader of a dataset agree on; io/DATASET.md is its description.
+// What the writer and the reader of a dataset agree on; docs/formats/dataset.md is its description.
 
 inline constexpr std::int64_t kDatasetFormatVersion = 4;
 inline constexpr FileFormat kDatasetFormat = {.name = "semigeo-dataset",

@@ -42,9 +42,9 @@ struct EncodedFields {
   std::optional<EncodedPrincipal> principal = {};  ///< in every level or in none
 };
 
-/// Writes one dataset (io/DATASET.md), which appears under its final name whole and verified or
-/// not at all. The same calls give the same bytes. Encode with io/files/chunk_codec.hpp, on any
-/// number of threads; call the writer from one thread at a time.
+/// Writes one dataset (docs/formats/dataset.md), which appears under its final name whole and
+/// verified or not at all. The same calls give the same bytes. Encode with
+/// io/files/chunk_codec.hpp, on any number of threads; call the writer from one thread at a time.
 ///
 /// Throws Error naming the final path when the disk refuses, std::invalid_argument when arrays do
 /// not fit each other. After either the writer can only be destroyed, which removes what it wrote.

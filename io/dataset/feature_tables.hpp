@@ -13,7 +13,7 @@
 namespace semigeo::io {
 
 // Features and contours of a level in its tables `features`, `contours` and `contour_points`;
-// io/DATASET.md is their description.
+// docs/formats/dataset.md is their description.
 
 using kernels::kContourKinds;
 using kernels::torsion_of;

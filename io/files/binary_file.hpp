@@ -15,8 +15,8 @@
 
 namespace semigeo::io {
 
-/// A kind of binary file of ours (io/LIBRARY.md): magic and version, data, a head that tells what
-/// the data is, and a trailer that finds the head and has its checksum. Little endian.
+/// A kind of binary file of ours (docs/formats/library.md): magic and version, data, a head that
+/// tells what the data is, and a trailer that finds the head and has its checksum. Little endian.
 struct BinaryFormat {
   std::string_view magic;  ///< 8 characters
   std::uint32_t version;   ///< the one that this program reads

@@ -15,8 +15,8 @@
 namespace semigeo::io {
 
 /// Fingerprint of everything a file says: XXH3_128 over one line of text per object, sorted, so
-/// that neither the order of writing nor HDF5's layout matters. io/DATASET.md lists the lines.
-/// The attributes `digest` and `complete` of the root are left out.
+/// that neither the order of writing nor HDF5's layout matters. docs/formats/dataset.md lists the
+/// lines. The attributes `digest` and `complete` of the root are left out.
 class ContentDigest {
  public:
   void add_group(const std::string& path);

@@ -22,9 +22,9 @@ struct ModelInfo {
   std::int64_t triplets = 0;
 };
 
-/// Reads a library (io/LIBRARY.md). Opening reads the index and a few bytes a model; postings and
-/// models are read as they are asked for, each checked against its checksum. Every failure is an
-/// Error that names the file and the object.
+/// Reads a library (docs/formats/library.md). Opening reads the index and a few bytes a model;
+/// postings and models are read as they are asked for, each checked against its checksum. Every
+/// failure is an Error that names the file and the object.
 class HashLibrary {
  public:
   /// Refuses other formats, versions of the future and unfinished files.

@@ -8,7 +8,7 @@
 
 namespace semigeo::io {
 
-// What the writer and the reader of a library agree on; io/LIBRARY.md is its description.
+// What the writer and the reader of a library agree on; docs/formats/library.md is its description.
 
 inline constexpr FileFormat kLibraryFormat = {.name = "semigeo-library",
                                               .version = 1,

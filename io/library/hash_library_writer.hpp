@@ -27,10 +27,10 @@ struct LibrarySizes {
   std::int64_t samples = 0;       ///< of all models
 };
 
-/// Writes a library (io/LIBRARY.md), first its postings, block by block, then its models. Equal
-/// content gives equal bytes. Memory: a few chunks, the index and about 200 bytes a model. The file
-/// appears under its final name when it is whole and verified. Wrong use is std::invalid_argument,
-/// a failure of the disk an Error. One thread at a time.
+/// Writes a library (docs/formats/library.md), first its postings, block by block, then its models.
+/// Equal content gives equal bytes. Memory: a few chunks, the index and about 200 bytes a model.
+/// The file appears under its final name when it is whole and verified. Wrong use is
+/// std::invalid_argument, a failure of the disk an Error. One thread at a time.
 class HashLibraryWriter {
  public:
   HashLibraryWriter(const std::filesystem::path& final_path, const LibraryHeader& header,

@@ -11,7 +11,7 @@
 
 namespace semigeo::io {
 
-/// A recognition model with its tables as they are stored: io/LIBRARY.md.
+/// A recognition model with its tables as they are stored: docs/formats/library.md.
 struct PackedModel {
   std::string name;
   std::string digest;

@@ -23,9 +23,9 @@ struct PartitionHeader {
 /// XXH3_64 of TripletRun::content_hash of all runs, in the order of models.
 std::uint64_t runs_hash(std::span<const std::uint64_t> content_hashes);
 
-/// Writes the postings of a range of shapes (io/LIBRARY.md), piece by piece; the file appears under
-/// its name when it is whole, unless the power is cut meanwhile: what is removed as soon as the
-/// library is made is not forced to the disk. Memory: two blocks.
+/// Writes the postings of a range of shapes (docs/formats/library.md), piece by piece; the file
+/// appears under its name when it is whole, unless the power is cut meanwhile: what is removed as
+/// soon as the library is made is not forced to the disk. Memory: two blocks.
 class PostingPartitionWriter {
  public:
   PostingPartitionWriter(const std::filesystem::path& path, PartitionHeader header);

@@ -1,4 +1,4 @@
-"""Reads a library with h5py: our chunks through HDF5's own filters, by what io/LIBRARY.md says and
+"""Reads a library with h5py: our chunks through HDF5's own filters, by what docs/formats/library.md says and
 nothing else. Usage: library_h5py_test.py WRITER"""
 
 import os
