@@ -35,6 +35,20 @@ def paths_of(text):
             for path in paths]
 
 
+def keys_of(document):
+    """Returns the keys of all objects in a document, but for those whose keys are names."""
+    keys = set()
+    if isinstance(document, dict):
+        for key, value in document.items():
+            keys.add(key)
+            if key not in ("parameters", "done_by_kind", "running", "failed", "recognised"):
+                keys |= keys_of(value)
+    elif isinstance(document, list):
+        for value in document:
+            keys |= keys_of(value)
+    return keys
+
+
 class FormatsTest(SemigeoTest):
     def setUp(self):
         super().setUp()
@@ -89,6 +103,29 @@ class FormatsTest(SemigeoTest):
         self.assert_named(json.loads((self.archive / "estimates.json").read_text()), text)
         first = (self.archive / "digests.txt").read_text().splitlines()[0]
         self.assertRegex(first, r"^semigeo-digests 1 \d+ [0-9a-f]{32}$")
+
+    def assert_document_named(self, *arguments, code=0):
+        document = json.loads(self.semigeo(*arguments, code=code).stdout)
+        with self.subTest(arguments=[str(a) for a in arguments]):
+            self.assert_named(keys_of(document), page("json.md"))
+
+    def test_documents_of_commands(self):
+        dataset, library = self.dataset("a.ply"), self.archive / "library.h5"
+        run = ("run", self.scans, "--output", self.folder / "other", "--fill-holes", "20", "--decimate", "0.01")
+        (self.scans / "bad.off").write_text("OFF\n3 1 0\n0 0 0\n")
+        self.assert_document_named(*run, "--library", "--dry-run", "--explain", "--json")
+        self.assert_document_named(*run, "--library", "--json", code=1)
+        self.assert_document_named(*run, "--levels", "3", "--dry-run", "--json")
+        self.assert_document_named(*run, "--dag", "json")
+        self.assert_document_named("recognise", self.scans, "--library", self.archive, "--json",
+                                   "--output", self.folder / "found", code=1)
+        self.assert_document_named("status", self.folder / "other", "--json")
+        self.assert_document_named("info", self.archive, "--json")
+        self.assert_document_named("info", dataset, "--json")
+        self.assert_document_named("library", "list", library, "--json")
+        self.assert_document_named("library", "check", library, "--json")
+        dataset.write_bytes(dataset.read_bytes()[:5000])
+        self.assert_document_named("check", self.archive, "--json", code=1)
 
     def test_configuration(self):
         options = (self.archive / "semigeo.toml").read_text()
