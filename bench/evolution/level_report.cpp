@@ -19,7 +19,7 @@ double count(std::int64_t value) {
 
 double shortest_edge(const kernels::LevelMesh& mesh) {
   double shortest2 = std::numeric_limits<double>::infinity();
-  for (std::int32_t f = 0; f < mesh.surface.face_count(); ++f)
+  for (std::int32_t f = 0; f < mesh.connectivity.face_count(); ++f)
     for (int i = 0; i < 3; ++i)
       shortest2 = std::min(shortest2, mesh.length2(kernels::halfedge(f, i)));
   return std::sqrt(shortest2);
@@ -79,9 +79,9 @@ std::span<const Column> columns() {
 
 LevelMeter::LevelMeter(const kernels::Surface& first)
     : first_edge_(kernels::mean_edge_length(first)), first_points_(first.points) {
-  mesh_.surface.triangles = first.triangles;
-  mesh_.surface.twin = first.twin;
-  mesh_.surface.part = first.part;
+  mesh_.connectivity.triangles = first.triangles;
+  mesh_.connectivity.twin = first.twin;
+  mesh_.part = first.part;
   mesh_.source.resize(first.points.size());
   std::iota(mesh_.source.begin(), mesh_.source.end(), 0);
   before_source_ = mesh_.source;
@@ -89,9 +89,9 @@ LevelMeter::LevelMeter(const kernels::Surface& first)
 }
 
 void LevelMeter::adopt(const jobs::LevelConnectivity& connectivity) {
-  mesh_.surface.triangles = connectivity.triangles;
-  mesh_.surface.part = connectivity.part;
-  mesh_.surface.twin = kernels::pair_twins(
+  mesh_.connectivity.triangles = connectivity.triangles;
+  mesh_.part = connectivity.part;
+  mesh_.connectivity.twin = kernels::pair_twins(
       kernels::group_edges(connectivity.triangles, std::ssize(connectivity.part)),
       connectivity.triangles.size());
   mesh_.source = connectivity.source_vertex;
@@ -107,11 +107,11 @@ LevelReport LevelMeter::measure(const jobs::LevelFields& fields,
     points[i] = fields.points[order[i]];
     mesh_.points[i] << points[i], 0.0f;
   }
-  mesh_.surface.part_count = static_cast<std::int32_t>(fields.parts);
+  mesh_.part_count = static_cast<std::int32_t>(fields.parts);
 
   LevelReport report;
   report.vertices = mesh_.vertex_count();
-  report.triangles = mesh_.surface.face_count();
+  report.triangles = mesh_.connectivity.face_count();
   report.parts = fields.parts;
   for (const jobs::PartMeasure& part : jobs::measure_parts(mesh_, context)) {
     report.boundary_edges += part.boundary_edges;

@@ -70,9 +70,11 @@ EvolvingSurface::EvolvingSurface(kernels::Surface surface, const EvolutionOption
   }
   mesh_.vertex_filled = std::move(origins.vertex_filled);
   mesh_.face_filled = std::move(origins.face_filled);
-  mesh_.initial_points = std::exchange(surface.points, {});
-  mesh_.surface = std::move(surface);
-  target_faces_ = mesh_.surface.face_count();
+  mesh_.initial_points = std::move(surface.points);
+  mesh_.part = std::move(surface.part);
+  mesh_.part_count = surface.part_count;
+  mesh_.connectivity = std::move(surface);
+  target_faces_ = mesh_.connectivity.face_count();
   part_reference_ = measure_parts(mesh_, context_);
 
   adopt_mesh();
@@ -83,7 +85,7 @@ EvolvingSurface::EvolvingSurface(kernels::Surface surface, const EvolutionOption
 
 /// Everything that has the size of the mesh.
 void EvolvingSurface::adopt_mesh() {
-  const std::size_t faces = mesh_.surface.triangles.size();
+  const std::size_t faces = mesh_.connectivity.triangles.size();
   next_points_.resize(mesh_.points.size());
   next_normals_.resize(mesh_.points.size());
   faces_.resize(faces);
@@ -92,7 +94,8 @@ void EvolvingSurface::adopt_mesh() {
 }
 
 kernels::SampledSurface EvolvingSurface::sampled() const {
-  return {{faces_, mesh_.surface.outgoing, mesh_.points, mesh_.normals, max_crossings_}, curved_};
+  return {{faces_, mesh_.connectivity.outgoing, mesh_.points, mesh_.normals, max_crossings_},
+          curved_};
 }
 
 kernels::PatchLayout EvolvingSurface::layout() const {
@@ -111,21 +114,22 @@ void EvolvingSurface::set_step(double step) {
 void EvolvingSurface::angle_weighted_normals() {
   context_.workers.for_blocks(vertex_count(), kFaceBlock, [&](IndexRange range) {
     for (auto v = range.begin; v < range.end; ++v)
-      mesh_.normals[v] =
-          kernels::angle_weighted_normal(mesh_.surface, mesh_.points, static_cast<std::int32_t>(v));
+      mesh_.normals[v] = kernels::angle_weighted_normal(mesh_.connectivity, mesh_.points,
+                                                        static_cast<std::int32_t>(v));
   });
 }
 
 void EvolvingSurface::prepare_faces() {
-  context_.workers.for_blocks(mesh_.surface.face_count(), kFaceBlock, [&](IndexRange range) {
+  context_.workers.for_blocks(mesh_.connectivity.face_count(), kFaceBlock, [&](IndexRange range) {
     for (auto f = range.begin; f < range.end; ++f)
-      kernels::measure_face(mesh_.surface, mesh_.points, static_cast<std::int32_t>(f), faces_[f]);
+      kernels::measure_face(mesh_.connectivity, mesh_.points, static_cast<std::int32_t>(f),
+                            faces_[f]);
   });
-  context_.workers.for_blocks(mesh_.surface.face_count(), kFaceBlock, [&](IndexRange range) {
+  context_.workers.for_blocks(mesh_.connectivity.face_count(), kFaceBlock, [&](IndexRange range) {
     for (auto f = range.begin; f < range.end; ++f) {
       kernels::unfold_face(faces_, static_cast<std::int32_t>(f));
       if (!options_.curved) continue;
-      const auto& t = mesh_.surface.triangles[f];
+      const auto& t = mesh_.connectivity.triangles[f];
       for (int i = 0; i < 3; ++i) {
         const std::int32_t p = t[i];
         const std::int32_t q = t[i == 2 ? 0 : i + 1];
@@ -198,12 +202,12 @@ LevelFields EvolvingSurface::evaluate() {
   fields.step = step_ * unit_;
   fields.scale = std::sqrt(variance_ + step_ * step_) * unit_;
   fields.mean_edge_length = mean_edge_length_ * unit_;
-  fields.parts = mesh_.surface.part_count;
+  fields.parts = mesh_.part_count;
   fields.remeshed = remeshed_;
   fields.shortest_side = shortest_side_ * unit_;
   fields.stored_order = stored_order_;
   fields.connectivity = std::exchange(connectivity_, std::nullopt);
-  part_has_patch_.assign(mesh_.surface.part_count, 0);
+  part_has_patch_.assign(mesh_.part_count, 0);
 
   const kernels::SampledSurface surface = sampled();
   const kernels::PatchLayout patch = layout();
@@ -222,7 +226,7 @@ LevelFields EvolvingSurface::evaluate() {
         fields.principal_direction_1[v] = e.principal.first;
         fields.principal_direction_2[v] = e.principal.second;
       }
-      if (e.patch_completeness > 0) note_patch(part_has_patch_[mesh_.surface.part[v]]);
+      if (e.patch_completeness > 0) note_patch(part_has_patch_[mesh_.part[v]]);
       next_points_[v] << e.position, 0.0f;
       next_normals_[v] = e.smoothed_normal;
     }
@@ -274,7 +278,7 @@ std::vector<PartMeasure> EvolvingSurface::restore_size() {
   }
   context_.workers.for_blocks(vertex_count(), kFaceBlock, [&](IndexRange range) {
     for (auto v = range.begin; v < range.end; ++v) {
-      const Restoration& r = restorations[mesh_.surface.part[v]];
+      const Restoration& r = restorations[mesh_.part[v]];
       const Eigen::Vector3d p = mesh_.points[v].head<3>().cast<double>();
       mesh_.points[v].head<3>() = (r.centre + r.factor * (p - r.centre)).cast<float>();
     }
@@ -304,7 +308,7 @@ std::vector<PartMeasure> EvolvingSurface::remesh(std::vector<PartMeasure> parts)
   vanished_ = vanished_ || result.vanished;
   if (!result.changed()) return std::move(result.parts);
   target_faces_ =
-      vanished_ ? mesh_.surface.face_count() : target_faces_ - result.counts.dropped_faces;
+      vanished_ ? mesh_.connectivity.face_count() : target_faces_ - result.counts.dropped_faces;
   part_reference_ = result.parts;
   adopt_mesh();
   connectivity_ = connectivity();
@@ -320,21 +324,21 @@ LevelConnectivity EvolvingSurface::connectivity() const {
   if (!mesh_.vertex_filled.empty()) result.vertex_filled.resize(n);
   result.face_filled = mesh_.face_filled;
   std::vector<std::int32_t> row(n);
-  std::vector<std::int32_t> part_number(mesh_.surface.part_count, kernels::kNone);
+  std::vector<std::int32_t> part_number(mesh_.part_count, kernels::kNone);
   std::int32_t parts = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const std::int32_t v = order[i];
     row[v] = static_cast<std::int32_t>(i);
-    std::int32_t& part = part_number[mesh_.surface.part[v]];
+    std::int32_t& part = part_number[mesh_.part[v]];
     if (part == kernels::kNone) part = parts++;
     result.part[i] = part;
     result.source_vertex[i] = mesh_.source[v];
     if (!mesh_.vertex_filled.empty()) result.vertex_filled[i] = mesh_.vertex_filled[v];
   }
-  result.triangles.resize(mesh_.surface.triangles.size());
-  context_.workers.for_blocks(mesh_.surface.face_count(), kFaceBlock, [&](IndexRange range) {
+  result.triangles.resize(mesh_.connectivity.triangles.size());
+  context_.workers.for_blocks(mesh_.connectivity.face_count(), kFaceBlock, [&](IndexRange range) {
     for (auto f = range.begin; f < range.end; ++f)
-      for (int i = 0; i < 3; ++i) result.triangles[f][i] = row[mesh_.surface.triangles[f][i]];
+      for (int i = 0; i < 3; ++i) result.triangles[f][i] = row[mesh_.connectivity.triangles[f][i]];
   });
   return result;
 }

@@ -60,7 +60,7 @@ class Finder {
  public:
   Finder(const EvolvingSurface& surface, const LevelFields& fields, const FeatureOptions& options,
          const engine::RunContext& context)
-      : surface_(surface.mesh().surface),
+      : surface_(surface.mesh().connectivity),
         mesh_(surface.mesh()),
         normals_(surface.smoothed_normals()),
         fields_(fields),
@@ -249,7 +249,7 @@ class Finder {
     return result;
   }
 
-  const kernels::Surface& surface_;
+  const kernels::Connectivity& surface_;
   const kernels::LevelMesh& mesh_;
   const std::vector<Eigen::Vector3f>& normals_;
   const LevelFields& fields_;

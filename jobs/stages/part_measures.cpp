@@ -19,7 +19,7 @@ struct Stretch {
 };
 
 void add_face(const kernels::LevelMesh& mesh, std::int32_t f, PartMeasure& sum) {
-  const kernels::Surface& surface = mesh.surface;
+  const kernels::Connectivity& surface = mesh.connectivity;
   const auto& t = surface.triangles[f];
   const std::array<Eigen::Vector3d, 3> p = {mesh.point(t[0]), mesh.point(t[1]), mesh.point(t[2])};
   for (int i = 0; i < 3; ++i) {
@@ -92,21 +92,20 @@ double PartMeasure::volume() const {
 
 std::vector<PartMeasure> measure_parts(const kernels::LevelMesh& mesh,
                                        const engine::RunContext& context) {
-  const kernels::Surface& surface = mesh.surface;
-  const std::int64_t faces = surface.face_count();
+  const std::int64_t faces = mesh.connectivity.face_count();
   std::vector<std::vector<Stretch>> blocks((faces + kFaceBlock - 1) / kFaceBlock);
   const auto block_count = static_cast<std::int64_t>(blocks.size());
   context.workers.for_blocks(block_count, 1, [&](engine::IndexRange range) {
     for (auto b = range.begin; b < range.end; ++b) {
       const auto end = static_cast<std::int32_t>(std::min((b + 1) * kFaceBlock, faces));
       for (auto f = static_cast<std::int32_t>(b * kFaceBlock); f < end; ++f) {
-        const std::int32_t part = surface.part[surface.triangles[f][0]];
+        const std::int32_t part = mesh.part[mesh.connectivity.triangles[f][0]];
         if (blocks[b].empty() || blocks[b].back().part != part) blocks[b].push_back({part, {}});
         add_face(mesh, f, blocks[b].back().measure);
       }
     }
   });
-  std::vector<PartMeasure> parts(surface.part_count);
+  std::vector<PartMeasure> parts(mesh.part_count);
   for (const auto& block : blocks)
     for (const Stretch& stretch : block) parts[stretch.part] += stretch.measure;
   return parts;

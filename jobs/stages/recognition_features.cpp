@@ -116,7 +116,7 @@ void evolve(const kernels::Surface& surface, const RecognitionParameters& parame
   for (int level = 0; level < levels && !evolving.vanished(); ++level) {
     const LevelFields fields = evolving.evaluate();
     if (level == 0) {
-      const kernels::Surface& first = evolving.mesh().surface;
+      const kernels::Connectivity& first = evolving.mesh().connectivity;
       measure(fields.points, model);
       levels = levels_of(fields.scale, model.diagonal, parameters);
       model.samples = kernels::sample_surface(fields.points, first.triangles, fields.normals,

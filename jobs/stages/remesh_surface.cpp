@@ -16,7 +16,7 @@ constexpr double kMargin = 2;
 template <typename Find>
 std::vector<std::int32_t> find_all(const kernels::LevelMesh& mesh,
                                    const engine::RunContext& context, const Find& find) {
-  const std::int64_t faces = mesh.surface.face_count();
+  const std::int64_t faces = mesh.connectivity.face_count();
   std::vector<std::vector<std::int32_t>> blocks((faces + kFaceBlock - 1) / kFaceBlock);
   const auto block_count = static_cast<std::int64_t>(blocks.size());
   context.workers.for_blocks(block_count, 1, [&](engine::IndexRange range) {
@@ -30,13 +30,13 @@ std::vector<std::int32_t> find_all(const kernels::LevelMesh& mesh,
 }
 
 /// One face of each part that is to be dropped.
-std::vector<std::int32_t> faces_of_dropped(const kernels::Surface& surface,
+std::vector<std::int32_t> faces_of_dropped(const kernels::LevelMesh& mesh,
                                            std::span<const std::uint8_t> dropped) {
   std::vector<std::int32_t> faces;
   if (std::ranges::find(dropped, 1) == dropped.end()) return faces;
   std::int32_t last = kernels::kNone;
-  for (std::int32_t f = 0; f < surface.face_count(); ++f) {
-    const std::int32_t part = surface.part[surface.triangles[f][0]];
+  for (std::int32_t f = 0; f < mesh.connectivity.face_count(); ++f) {
+    const std::int32_t part = mesh.part[mesh.connectivity.triangles[f][0]];
     if (part != last && dropped[part] != 0) faces.push_back(f);
     last = part;
   }
@@ -48,7 +48,7 @@ std::vector<std::int32_t> faces_of_dropped(const kernels::Surface& surface,
 RemeshResult remesh_surface(kernels::LevelMesh& mesh, std::vector<PartMeasure> parts,
                             const RemeshOptions& options, const engine::RunContext& context) {
   RemeshResult result;
-  std::vector<std::int32_t> dropped = faces_of_dropped(mesh.surface, options.dropped);
+  std::vector<std::int32_t> dropped = faces_of_dropped(mesh, options.dropped);
   bool refined = false;
   while (true) {
     const double reference = std::max(options.first_edge_length, mean_edge_length(parts));
@@ -57,7 +57,8 @@ RemeshResult remesh_surface(kernels::LevelMesh& mesh, std::vector<PartMeasure> p
       kernels::find_odd_faces(mesh, begin, end, result.shortest_side, faces);
     };
     const auto odd = find_all(mesh, context, find_odd);
-    if (odd.empty() && dropped.empty() && (refined || mesh.surface.face_count() >= options.faces))
+    if (odd.empty() && dropped.empty() &&
+        (refined || mesh.connectivity.face_count() >= options.faces))
       break;
     kernels::Remesher remesher(mesh, options.curved);
     for (const std::int32_t face : std::exchange(dropped, {})) remesher.drop_part(face);

@@ -13,7 +13,7 @@ namespace {
 
 /// Calls test(w) for the neighbours of v until it returns true. result: whether it did.
 template <typename Test>
-bool any_neighbour(const Surface& surface, std::int32_t v, const Test& test) {
+bool any_neighbour(const Connectivity& surface, std::int32_t v, const Test& test) {
   const std::int32_t start = surface.outgoing[v];
   for (std::int32_t h = start;;) {
     if (test(surface.target(h))) return true;
@@ -27,7 +27,7 @@ bool any_neighbour(const Surface& surface, std::int32_t v, const Test& test) {
 /// Whether two edges no longer than `radius` together lead to a comparable vertex that is higher.
 /// Along the surface it is not farther; most that are no maximum are found out here, at a tenth of
 /// the cost of a ball.
-bool outdone_two_edges_away(const Surface& surface, std::span<const Eigen::Vector4f> points,
+bool outdone_two_edges_away(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
                             const CurvatureField& field, std::int32_t v, double radius) {
   const auto length = [&](std::int32_t a, std::int32_t b) {
     return (points[b] - points[a]).cast<double>().norm();
@@ -42,7 +42,7 @@ bool outdone_two_edges_away(const Surface& surface, std::span<const Eigen::Vecto
 
 }  // namespace
 
-std::int32_t uphill(const Surface& surface, const CurvatureField& field, std::int32_t v) {
+std::int32_t uphill(const Connectivity& surface, const CurvatureField& field, std::int32_t v) {
   if (!field.comparable(v, v)) return kNone;
   std::int32_t best = v;
   any_neighbour(surface, v, [&](std::int32_t w) {
@@ -52,7 +52,7 @@ std::int32_t uphill(const Surface& surface, const CurvatureField& field, std::in
   return best;
 }
 
-bool is_maximum(const Surface& surface, std::span<const Eigen::Vector4f> points,
+bool is_maximum(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
                 const CurvatureField& field, std::int32_t v, double radius, GeodesicBall& ball) {
   if (uphill(surface, field, v) != v) return false;
   if (!(radius > 0)) return true;
@@ -65,7 +65,7 @@ bool is_maximum(const Surface& surface, std::span<const Eigen::Vector4f> points,
   return highest;
 }
 
-Summit summit(const Surface& surface, std::span<const Eigen::Vector4f> points,
+Summit summit(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
               const CurvatureField& field, std::int32_t v) {
   const auto point = [&](std::int32_t w) -> Eigen::Vector3d {
     return points[w].head<3>().cast<double>();
@@ -126,7 +126,7 @@ std::vector<std::int32_t> peaks_of(std::vector<std::int32_t> uphill) {
   return uphill;
 }
 
-std::vector<float> prominences(const Surface& surface, const CurvatureField& field,
+std::vector<float> prominences(const Connectivity& surface, const CurvatureField& field,
                                std::span<const std::int32_t> peaks) {
   // Passes: edges between the slopes of two peaks, as high as their lower end. Highest first, as
   // one number each: the height, whose bits are in the order of positive floats, upside down, and

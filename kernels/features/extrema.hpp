@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "kernels/surface/connectivity.hpp"
 #include "kernels/surface/geodesic_ball.hpp"
-#include "kernels/surface/surface.hpp"
 
 namespace semigeo::kernels {
 
@@ -34,14 +34,14 @@ struct CurvatureField {
 
 /// The highest of v and its comparable neighbours: the next step of the steepest ascent in
 /// |value|. v itself at a peak; kNone if v takes no part or is zero.
-std::int32_t uphill(const Surface& surface, const CurvatureField& field, std::int32_t v);
+std::int32_t uphill(const Connectivity& surface, const CurvatureField& field, std::int32_t v);
 
 /// Whether no comparable vertex within `radius` (units of the points) of the peak v is higher. The
 /// ring of neighbours always counts; radius 0 is the thesis' rule.
 /// Source: thesis 5.6.1. Differs: compares only values of the same sign, so that a ridge beside a
 /// deeper valley is a feature too, and within a radius, so that features do not depend on the
 /// triangulation.
-bool is_maximum(const Surface& surface, std::span<const Eigen::Vector4f> points,
+bool is_maximum(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
                 const CurvatureField& field, std::int32_t v, double radius, GeodesicBall& ball);
 
 /// Where a maximum lies: a point of a face at the peak.
@@ -63,7 +63,7 @@ struct Summit {
 /// of them, moved onto the surface.
 /// Differs: the thesis takes the vertex (5.6.1). Another triangulation has other vertices; this
 /// point reappears more often (bench/repeatability).
-Summit summit(const Surface& surface, std::span<const Eigen::Vector4f> points,
+Summit summit(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
               const CurvatureField& field, std::int32_t v);
 
 /// For each vertex the peak at which its steepest ascent ends, or kNone. `uphill`: (N) results of
@@ -73,7 +73,7 @@ std::vector<std::int32_t> peaks_of(std::vector<std::int32_t> uphill);
 /// How much |value| falls from each peak on the way to the nearest higher one: to the highest pass
 /// between them, among comparable vertices; all of it if no higher one can be reached. result: (N),
 /// 0 at all vertices that are no peak. `peaks`: of each vertex.
-std::vector<float> prominences(const Surface& surface, const CurvatureField& field,
+std::vector<float> prominences(const Connectivity& surface, const CurvatureField& field,
                                std::span<const std::int32_t> peaks);
 
 }  // namespace semigeo::kernels

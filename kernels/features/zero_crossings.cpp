@@ -14,7 +14,7 @@ bool positive(const CurvatureField& field, std::int32_t v) {
   return value_at(field, v) >= 0;
 }
 
-bool crossed(const Surface& surface, const CurvatureField& field, std::int32_t f) {
+bool crossed(const Connectivity& surface, const CurvatureField& field, std::int32_t f) {
   const auto& t = surface.triangles[f];
   if (!field.counts(t[0]) || !field.counts(t[1]) || !field.counts(t[2])) return false;
   const bool first = positive(field, t[0]);
@@ -28,7 +28,7 @@ struct Passage {
   std::int32_t exit = kNone;
 };
 
-Passage passage(const Surface& surface, const CurvatureField& field, std::int32_t f) {
+Passage passage(const Connectivity& surface, const CurvatureField& field, std::int32_t f) {
   Passage result;
   for (int i = 0; i < 3; ++i) {
     const std::int32_t h = halfedge(f, i);
@@ -41,7 +41,8 @@ Passage passage(const Surface& surface, const CurvatureField& field, std::int32_
 
 class Tracer {
  public:
-  Tracer(const Surface& surface, const CurvatureField& field, std::span<const std::int32_t> faces)
+  Tracer(const Connectivity& surface, const CurvatureField& field,
+         std::span<const std::int32_t> faces)
       : surface_(surface), field_(field), faces_(faces), traced_(faces.size(), false) {
     contours_.offsets.push_back(0);
   }
@@ -115,7 +116,7 @@ class Tracer {
     contours_.offsets.push_back(static_cast<std::int32_t>(points.size()));
   }
 
-  const Surface& surface_;
+  const Connectivity& surface_;
   const CurvatureField& field_;
   std::span<const std::int32_t> faces_;
   std::vector<bool> traced_;
@@ -124,13 +125,13 @@ class Tracer {
 
 }  // namespace
 
-void find_crossing_faces(const Surface& surface, const CurvatureField& field, std::int32_t begin,
-                         std::int32_t end, std::vector<std::int32_t>& faces) {
+void find_crossing_faces(const Connectivity& surface, const CurvatureField& field,
+                         std::int32_t begin, std::int32_t end, std::vector<std::int32_t>& faces) {
   for (std::int32_t f = begin; f < end; ++f)
     if (crossed(surface, field, f)) faces.push_back(f);
 }
 
-Contours trace_contours(const Surface& surface, const CurvatureField& field,
+Contours trace_contours(const Connectivity& surface, const CurvatureField& field,
                         std::span<const std::int32_t> faces) {
   return Tracer(surface, field, faces).trace();
 }

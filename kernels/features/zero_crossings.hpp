@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "kernels/features/extrema.hpp"
-#include "kernels/surface/surface.hpp"
+#include "kernels/surface/connectivity.hpp"
 
 namespace semigeo::kernels {
 
@@ -33,15 +33,15 @@ struct Contours {
 /// Appends those faces of [begin, end) through which a contour runs: all corners take part in the
 /// field, and their signs differ. What is smaller than `field.flat` is zero and counts as positive,
 /// so that a contour runs through a vertex that is exactly zero, and flat regions have none.
-void find_crossing_faces(const Surface& surface, const CurvatureField& field, std::int32_t begin,
-                         std::int32_t end, std::vector<std::int32_t>& faces);
+void find_crossing_faces(const Connectivity& surface, const CurvatureField& field,
+                         std::int32_t begin, std::int32_t end, std::vector<std::int32_t>& faces);
 
 /// Joins the crossings of those faces to contours, open ones first, in the order of the faces.
 /// Each crossing is where linear interpolation along its edge gives zero; points that coincide
 /// are one. Contours end at boundaries and at faces that do not take part; those that shrink to a
 /// point are left out. `faces`: all of them, ascending. Linear cost.
 /// Source: thesis 5.7.
-Contours trace_contours(const Surface& surface, const CurvatureField& field,
+Contours trace_contours(const Connectivity& surface, const CurvatureField& field,
                         std::span<const std::int32_t> faces);
 
 }  // namespace semigeo::kernels

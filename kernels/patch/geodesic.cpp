@@ -36,8 +36,8 @@ Ray towards_apex(const Ray& ray) {
 
 }  // namespace
 
-void measure_face(const Surface& surface, std::span<const Eigen::Vector4f> points, std::int32_t f,
-                  GeodesicFace& face) {
+void measure_face(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
+                  std::int32_t f, GeodesicFace& face) {
   const auto& t = surface.triangles[f];
   const Eigen::Vector3f p0 = points[t[0]].head<3>();
   const Eigen::Vector3f e01 = points[t[1]].head<3>() - p0;
@@ -68,7 +68,7 @@ void unfold_face(std::span<GeodesicFace> faces, std::int32_t f) {
   }
 }
 
-Eigen::Vector3f angle_weighted_normal(const Surface& surface,
+Eigen::Vector3f angle_weighted_normal(const Connectivity& surface,
                                       std::span<const Eigen::Vector4f> points, std::int32_t v) {
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   const Eigen::Vector3f p = points[v].head<3>();

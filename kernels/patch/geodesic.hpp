@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "kernels/surface/surface.hpp"
+#include "kernels/surface/connectivity.hpp"
 
 namespace semigeo::kernels {
 
@@ -70,14 +70,14 @@ struct GeodesicMesh {
 
 /// First half of the preparation of face f: connectivity and metric. Needs the points only.
 /// Degenerate faces get a small positive area, so that everything stays finite.
-void measure_face(const Surface& surface, std::span<const Eigen::Vector4f> points, std::int32_t f,
-                  GeodesicFace& face);
+void measure_face(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
+                  std::int32_t f, GeodesicFace& face);
 /// Second half: the unfolding coefficients. Needs `measure_face` of f and its neighbours.
 void unfold_face(std::span<GeodesicFace> faces, std::int32_t f);
 
 /// Unit normal at vertex v: the mean of the incident faces' unit normals weighted by the angle at
 /// v. Zero if all incident faces are degenerate. Source: thesis (5.1).
-Eigen::Vector3f angle_weighted_normal(const Surface& surface,
+Eigen::Vector3f angle_weighted_normal(const Connectivity& surface,
                                       std::span<const Eigen::Vector4f> points, std::int32_t v);
 
 /// The direction of a ray in space, of unit length.

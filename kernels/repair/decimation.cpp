@@ -32,7 +32,7 @@ class Decimation {
     {
       std::vector<Candidate> all;
       for (std::int32_t v = 0; v < vertices; ++v) {
-        thinning_.look_at(v, region_);
+        thinning_.examine(v, region_);
         const double key = key_of(region_);
         if (key <= options_.tolerance) all.push_back({static_cast<float>(key), v, 0});
       }
@@ -72,7 +72,7 @@ class Decimation {
 
   void try_to_remove(const Candidate& candidate) {
     const std::int32_t v = candidate.vertex;
-    thinning_.look_at(v, region_);
+    thinning_.examine(v, region_);
     const auto cover = thinning_.cover(region_);
     if (cover.empty()) return;
     const double error = find_covering_faces(cover);
@@ -81,18 +81,19 @@ class Decimation {
       queue_.push({static_cast<float>(error), v, version_[v]});
       return;
     }
-    const auto slots = thinning_.replace(region_, cover);
-    for (const std::int32_t f : region_.faces) first_covered_[f] = kNone;
+    thinning_.replace(region_, cover);
+    for (const std::int32_t h : region_.spokes) first_covered_[face_of(h)] = kNone;
     for (const Covered& c : covered_) {
-      next_covered_[c.vertex] = first_covered_[slots[c.face]];
-      first_covered_[slots[c.face]] = c.vertex;
+      std::int32_t& first = first_covered_[face_of(region_.spokes[c.face])];
+      next_covered_[c.vertex] = first;
+      first = c.vertex;
       covered_at_[c.vertex] = c.distance;
     }
     ++version_[v];
     --left_;
     const std::vector<std::int32_t>& ring = region_.ring;
     for (const std::int32_t w : ring) {
-      thinning_.look_at(w, neighbour_);
+      thinning_.examine(w, neighbour_);
       ++version_[w];
       const double key = key_of(neighbour_);
       if (key <= options_.tolerance) queue_.push({static_cast<float>(key), w, version_[w]});
@@ -101,10 +102,10 @@ class Decimation {
 
   /// The vertex itself and all that its faces cover, each with the face of the cover that is
   /// nearest. result: the largest distance.
-  double find_covering_faces(std::span<const std::array<std::int32_t, 3>> cover) {
+  double find_covering_faces(std::span<const Triangle> cover) {
     covered_.assign(1, {region_.vertex, 0, 0.0f});
-    for (const std::int32_t f : region_.faces)
-      for (std::int32_t w = first_covered_[f]; w != kNone; w = next_covered_[w])
+    for (const std::int32_t h : region_.spokes)
+      for (std::int32_t w = first_covered_[face_of(h)]; w != kNone; w = next_covered_[w])
         covered_.push_back({w, 0, 0.0f});
     corners_.clear();
     for (const auto& t : cover)

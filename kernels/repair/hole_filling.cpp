@@ -116,10 +116,10 @@ FilledSurface insert_patches(const Surface& surface, const std::vector<BoundaryL
     ++(patches[k].triangles.empty() ? filled.counts.unsplittable : filled.counts.filled);
     const auto& loop = loops[k].vertices;
     const auto rim = static_cast<std::int32_t>(loop.size());
-    const auto first_new = static_cast<std::int32_t>(result.vertex_count()) - rim;
+    const auto first_new = static_cast<std::int32_t>(result.points.size()) - rim;
     result.points.insert(result.points.end(), patches[k].points.begin(), patches[k].points.end());
     for (const auto& t : patches[k].triangles) {
-      std::array<std::int32_t, 3> face{};
+      Triangle face{};
       for (int i = 0; i < 3; ++i) face[i] = t[i] < rim ? loop[t[i]] : first_new + t[i];
       result.triangles.push_back(face);
     }
@@ -130,7 +130,7 @@ FilledSurface insert_patches(const Surface& surface, const std::vector<BoundaryL
   std::fill(filled.face_filled.begin() + surface.face_count(), filled.face_filled.end(), 1);
   if (filled.counts.filled > 0) {
     result.twin =
-        pair_twins(group_edges(result.triangles, result.vertex_count()), result.triangles.size());
+        pair_twins(group_edges(result.triangles, std::ssize(result.points)), result.face_count());
     connect(result);
   }
   return filled;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -20,8 +19,8 @@ struct HolePatchOptions {
 
 /// Triangles that fill one hole.
 struct HolePatch {
-  std::vector<Eigen::Vector3f> points;                 ///< new vertices
-  std::vector<std::array<std::int32_t, 3>> triangles;  ///< 0 ... n - 1: the loop; n ...: points
+  std::vector<Eigen::Vector3f> points;  ///< new vertices
+  std::vector<Triangle> triangles;      ///< 0 ... n - 1: the loop; n ...: points
 };
 
 /// Fills the boundary loop `loop` (vertices of the surface, in the order in which the filling faces

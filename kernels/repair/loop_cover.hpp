@@ -1,16 +1,17 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
 
+#include "kernels/surface/connectivity.hpp"
+
 namespace semigeo::kernels {
 
 struct LoopCover {
-  std::vector<std::array<std::int32_t, 3>> triangles;  ///< indices into the loop, running along it
+  std::vector<Triangle> triangles;  ///< indices into the loop, running along it
   double area = 0;
   double folded_area = 0;  ///< of the smaller of any two neighbours that lie back on each other
 };

@@ -28,8 +28,8 @@ double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
 
 }  // namespace
 
-std::span<const std::array<std::int32_t, 3>> LoopSplitter::split(
-    std::span<const Eigen::Vector3d> loop, const Joined& joined, const Eigen::Vector3d& normal) {
+std::span<const Triangle> LoopSplitter::split(std::span<const Eigen::Vector3d> loop,
+                                              const Joined& joined, const Eigen::Vector3d& normal) {
   if (!normal.isZero(0)) {
     split_all(loop, joined, normal, nullptr);
   } else if (!split_all(loop, joined, normal, nullptr)) {
@@ -40,7 +40,7 @@ std::span<const std::array<std::int32_t, 3>> LoopSplitter::split(
   return triangles_;
 }
 
-std::span<const std::array<std::int32_t, 3>> LoopSplitter::split_as_far_as_possible(
+std::span<const Triangle> LoopSplitter::split_as_far_as_possible(
     std::span<const Eigen::Vector3d> loop, const Joined& joined,
     std::vector<std::vector<std::int32_t>>& stuck) {
   stuck.clear();

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
+
+#include "kernels/surface/connectivity.hpp"
 
 namespace semigeo::kernels {
 
@@ -39,15 +40,14 @@ class LoopSplitter {
   /// some sub-loop has no valid split. Sub-loops are split along `normal`, against which the loop
   /// runs anticlockwise; if that is zero, each along its own average normal (its vector area), or,
   /// where that leads nowhere, all along that of the whole loop. Valid until the next call.
-  std::span<const std::array<std::int32_t, 3>> split(
-      std::span<const Eigen::Vector3d> loop, const Joined& joined,
-      const Eigen::Vector3d& normal = Eigen::Vector3d::Zero());
+  std::span<const Triangle> split(std::span<const Eigen::Vector3d> loop, const Joined& joined,
+                                  const Eigen::Vector3d& normal = Eigen::Vector3d::Zero());
 
   /// The same, each sub-loop along its own normal; those without a valid split go to `stuck` (of
   /// indices into the loop) and the others are split on.
-  std::span<const std::array<std::int32_t, 3>> split_as_far_as_possible(
-      std::span<const Eigen::Vector3d> loop, const Joined& joined,
-      std::vector<std::vector<std::int32_t>>& stuck);
+  std::span<const Triangle> split_as_far_as_possible(std::span<const Eigen::Vector3d> loop,
+                                                     const Joined& joined,
+                                                     std::vector<std::vector<std::int32_t>>& stuck);
 
  private:
   struct Split {
@@ -79,7 +79,7 @@ class LoopSplitter {
   std::vector<std::int32_t> sizes_;         ///< of those sub-loops
   std::vector<std::int32_t> current_;       ///< the sub-loop in hand
   std::vector<Eigen::Vector2d> projected_;  ///< its points in the plane
-  std::vector<std::array<std::int32_t, 3>> triangles_;
+  std::vector<Triangle> triangles_;
 };
 
 }  // namespace semigeo::kernels

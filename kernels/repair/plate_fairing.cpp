@@ -16,8 +16,6 @@ constexpr double kLargestCotangent = 5;
 /// Vertices that move farther than this many radii of the patch have been thrown out of it.
 constexpr double kReach = 3;
 
-using Triangle = std::array<std::int32_t, 3>;
-
 std::vector<double> vertex_areas(const std::vector<Eigen::Vector3d>& points,
                                  std::span<const Triangle> triangles) {
   std::vector<double> area(points.size(), 0.0);
@@ -77,7 +75,7 @@ Equations plate_equations(const std::vector<Eigen::Vector3d>& points,
     }
   const double stiffness = std::pow(2 * std::numbers::pi / wave_length, 2);
   for (std::size_t v = 0; v < points.size(); ++v) {
-    if (roles[v] != PlateRole::tied) continue;
+    if (roles[v] != PlateRole::kTied) continue;
     const double scale = stiffness * std::sqrt(area[v]);
     entries.emplace_back(moving + column[v], column[v], scale);
     equations.right.row(moving + column[v]) = scale * targets[v].transpose();
@@ -106,7 +104,7 @@ bool fair_plate(std::vector<Eigen::Vector3d>& points, std::span<const Eigen::Vec
   std::vector<std::int32_t> column(points.size(), -1);
   std::int32_t moving = 0;
   for (std::size_t v = 0; v < points.size(); ++v)
-    if (roles[v] != PlateRole::held) column[v] = moving++;
+    if (roles[v] != PlateRole::kHeld) column[v] = moving++;
   if (moving == 0) return true;
   const Equations equations =
       plate_equations(points, targets, roles, triangles, column, moving, wave_length);

@@ -1,18 +1,19 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
+
+#include "kernels/surface/connectivity.hpp"
 
 namespace semigeo::kernels {
 
 /// What fairing may do with a vertex.
 enum class PlateRole : std::uint8_t {
-  held,  ///< stays
-  tied,  ///< moves, but is drawn to where it was
-  free   ///< moves
+  kHeld,  ///< The vertex stays.
+  kTied,  ///< The vertex moves, but is drawn to where it was.
+  kFree   ///< The vertex moves.
 };
 
 /// Moves vertices of a mesh to where the sum of the squared Laplacians at tied and free vertices is
@@ -24,7 +25,7 @@ enum class PlateRole : std::uint8_t {
 /// vertex would move farther than three times the radius of the mesh from its centroid. Cost: one
 /// sparse factorisation.
 bool fair_plate(std::vector<Eigen::Vector3d>& points, std::span<const Eigen::Vector3d> targets,
-                std::span<const PlateRole> roles,
-                std::span<const std::array<std::int32_t, 3>> triangles, double wave_length);
+                std::span<const PlateRole> roles, std::span<const Triangle> triangles,
+                double wave_length);
 
 }  // namespace semigeo::kernels

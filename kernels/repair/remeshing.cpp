@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "kernels/surface/circulators.hpp"
 #include "kernels/surface/quadratic_face.hpp"
 #include "kernels/surface/vertex_order.hpp"
 
@@ -20,13 +21,11 @@ constexpr int kLargeFan = 64;
 /// Sides of what is left of a surface that has vanished, in shortest sides.
 constexpr double kRemnantEdge = 10;
 
-bool large_fan(const Surface& surface, std::int32_t v) {
-  std::int32_t h = surface.outgoing[v];
-  for (int faces = 0; faces < kLargeFan; ++faces) {
-    h = surface.ccw(h);
-    if (h == kNone || h == surface.outgoing[v]) return false;
-  }
-  return true;
+bool has_large_fan(const Connectivity& mesh, std::int32_t v) {
+  int faces = 0;
+  for ([[maybe_unused]] const std::int32_t h : outgoing(mesh, v))
+    if (++faces > kLargeFan) return true;
+  return false;
 }
 
 /// Squared least height of a triangle.
@@ -54,7 +53,7 @@ Entry pop(std::vector<Entry>& heap) {
 }  // namespace
 
 double LevelMesh::height2(std::int32_t f) const {
-  const auto& t = surface.triangles[f];
+  const auto& t = connectivity.triangles[f];
   return squared_height(point(t[0]), point(t[1]), point(t[2]));
 }
 
@@ -67,20 +66,12 @@ void find_odd_faces(const LevelMesh& mesh, std::int32_t begin, std::int32_t end,
 
 void find_long_edges(const LevelMesh& mesh, std::int32_t begin, std::int32_t end, double length,
                      std::vector<std::int32_t>& edges) {
-  for (std::int32_t f = begin; f < end; ++f) {
-    const auto& t = mesh.surface.triangles[f];
-    if (t[0] == kNone) continue;
-    const std::array<Eigen::Vector3d, 3> p = {mesh.point(t[0]), mesh.point(t[1]), mesh.point(t[2])};
-    for (int i = 0; i < 3; ++i) {
-      const std::int32_t h = halfedge(f, i);
-      if (mesh.surface.twin[h] > h) continue;  // found from the other side
-      if ((p[i == 2 ? 0 : i + 1] - p[i]).squaredNorm() > length * length) edges.push_back(h);
-    }
-  }
+  for (const std::int32_t h : kernels::edges(mesh.connectivity, begin, end))
+    if (mesh.length2(h) > length * length) edges.push_back(h);
 }
 
 Remesher::Remesher(LevelMesh& mesh, bool curved)
-    : mesh_(mesh), editor_(mesh.surface), curved_(curved), first_new_(mesh.vertex_count()) {}
+    : mesh_(mesh), editor_(mesh.connectivity), curved_(curved), first_new_(mesh.vertex_count()) {}
 
 void Remesher::drop_part(std::int32_t face) {
   const SurfaceEditor::Dropped dropped = editor_.drop_part(face);
@@ -103,11 +94,11 @@ void Remesher::push_face(std::int32_t f) {
 }
 
 void Remesher::push_fan(std::int32_t v) {
-  editor_.each_corner(v, [&](std::int32_t h) {
+  for (const std::int32_t h : outgoing(mesh_.connectivity, v)) {
     push_edge(h);
-    if (mesh_.surface.twin[prev(h)] == kNone) push_edge(prev(h));
+    if (mesh_.connectivity.twin[prev(h)] == kNone) push_edge(prev(h));
     push_face(face_of(h));
-  });
+  }
 }
 
 void Remesher::remove_odd(std::span<const std::int32_t> faces, double shortest) {
@@ -138,7 +129,7 @@ void Remesher::remove_short_edges() {
 
 /// If the triangle or tetrahedron of h is all that is left, makes a regular one of it.
 bool Remesher::keep_remnant(std::int32_t h) {
-  const Surface& surface = mesh_.surface;
+  const Connectivity& surface = mesh_.connectivity;
   const std::int32_t t = surface.twin[h];
   if (face_count() != (t == kNone ? 1 : 4)) return false;
   const std::array<std::int32_t, 4> corners = {surface.origin(h), surface.target(h),
@@ -160,12 +151,12 @@ bool Remesher::keep_remnant(std::int32_t h) {
 
 /// Whether the two faces of an edge would be less flat with the other diagonal between them.
 bool Remesher::flip_is_better(std::int32_t h) const {
-  const std::int32_t t = mesh_.surface.twin[h];
+  const std::int32_t t = mesh_.connectivity.twin[h];
   if (t == kNone) return false;
-  const Eigen::Vector3d a = mesh_.point(mesh_.surface.origin(h));
-  const Eigen::Vector3d b = mesh_.point(mesh_.surface.target(h));
-  const Eigen::Vector3d c = mesh_.point(mesh_.surface.origin(prev(h)));
-  const Eigen::Vector3d d = mesh_.point(mesh_.surface.origin(prev(t)));
+  const Eigen::Vector3d a = mesh_.point(mesh_.connectivity.origin(h));
+  const Eigen::Vector3d b = mesh_.point(mesh_.connectivity.target(h));
+  const Eigen::Vector3d c = mesh_.point(mesh_.connectivity.origin(prev(h)));
+  const Eigen::Vector3d d = mesh_.point(mesh_.connectivity.origin(prev(t)));
   return std::min(squared_height(a, d, c), squared_height(d, b, c)) >
          std::min(squared_height(a, b, c), squared_height(b, a, d));
 }
@@ -187,22 +178,22 @@ void Remesher::remove_flat_face(std::int32_t f) {
   ++counts_.flipped;
   push_edge(h);
   push_face(face_of(h));
-  push_face(face_of(mesh_.surface.twin[h]));
+  push_face(face_of(mesh_.connectivity.twin[h]));
 }
 
 /// Makes one vertex of two, or takes out of the way what prevents it.
 void Remesher::remove_edge(std::int32_t edge) {
-  const Surface& surface = mesh_.surface;
+  const Connectivity& surface = mesh_.connectivity;
   const std::int32_t h = editor_.from_larger_fan(edge);
   const SurfaceEditor::Collapse check = editor_.may_collapse(h);
   switch (check.obstacle) {
-    case SurfaceEditor::Obstacle::none:
+    case SurfaceEditor::Obstacle::kNothing:
       merge(h);
       break;
-    case SurfaceEditor::Obstacle::part:
+    case SurfaceEditor::Obstacle::kPart:
       if (!keep_remnant(h)) drop_part(face_of(h));
       break;
-    case SurfaceEditor::Obstacle::chord: {
+    case SurfaceEditor::Obstacle::kChord: {
       const std::int32_t t = surface.twin[h];
       editor_.cut_chord(h);
       ++counts_.torn;
@@ -212,7 +203,7 @@ void Remesher::remove_edge(std::int32_t edge) {
       push_edge(t);
       break;
     }
-    case SurfaceEditor::Obstacle::cycle: {
+    case SurfaceEditor::Obstacle::kCycle: {
       if (const std::int32_t spoke = spoke_inside(h, check.third); spoke != kNone) {
         // Of the three faces there one is left, between the vertices of the cycle.
         const std::int32_t left = face_of(surface.ccw(surface.twin[spoke]));
@@ -241,17 +232,17 @@ void Remesher::remove_edge(std::int32_t edge) {
 double Remesher::least_cosine(std::int32_t v, std::int32_t other, const Eigen::Vector3d& p) const {
   double least = 1;
   const Eigen::Vector3d old = mesh_.point(v);
-  editor_.each_corner(v, [&](std::int32_t h) {
-    const std::int32_t b = mesh_.surface.target(h);
-    const std::int32_t c = mesh_.surface.origin(prev(h));
-    if (b == other || c == other) return;
+  for (const std::int32_t h : outgoing(mesh_.connectivity, v)) {
+    const std::int32_t b = mesh_.connectivity.target(h);
+    const std::int32_t c = mesh_.connectivity.origin(prev(h));
+    if (b == other || c == other) continue;
     const Eigen::Vector3d pb = mesh_.point(b);
     const Eigen::Vector3d pc = mesh_.point(c);
     const Eigen::Vector3d before = (pb - old).cross(pc - old);
     const Eigen::Vector3d after = (pb - p).cross(pc - p);
     const double size = before.norm() * after.norm();
     if (size > 0) least = std::min(least, before.dot(after) / size);
-  });
+  }
   return least;
 }
 
@@ -260,10 +251,10 @@ double Remesher::least_cosine(std::int32_t v, std::int32_t other, const Eigen::V
 Eigen::Vector3d Remesher::merged_point(std::int32_t a, std::int32_t b) const {
   Eigen::Vector3d pa = mesh_.point(a);
   Eigen::Vector3d pb = mesh_.point(b);
-  const bool a_fixed = mesh_.surface.on_boundary(a);
-  const bool b_fixed = mesh_.surface.on_boundary(b);
+  const bool a_fixed = mesh_.connectivity.on_boundary(a);
+  const bool b_fixed = mesh_.connectivity.on_boundary(b);
   if (a_fixed != b_fixed) return a_fixed ? pa : pb;
-  if (large_fan(mesh_.surface, a)) return pa;
+  if (has_large_fan(mesh_.connectivity, a)) return pa;
   const bool close = (pb - pa).squaredNorm() < shortest2_;
   Eigen::Vector3d best = pa;
   double best_cosine = -2;
@@ -280,7 +271,7 @@ Eigen::Vector3d Remesher::merged_point(std::int32_t a, std::int32_t b) const {
 /// If the cycle of the ends of h and `third` has but one vertex on one of its sides: a half-edge
 /// to that vertex.
 std::int32_t Remesher::spoke_inside(std::int32_t h, std::int32_t third) const {
-  const Surface& surface = mesh_.surface;
+  const Connectivity& surface = mesh_.connectivity;
   for (const std::int32_t side : {h, surface.twin[h]}) {
     if (side == kNone) continue;
     // Round the apex: to the origin of `side`, to its target, and to the third.
@@ -296,7 +287,7 @@ std::int32_t Remesher::spoke_inside(std::int32_t h, std::int32_t third) const {
 /// Makes the ends of h one; the survivor stays where it is.
 void Remesher::absorb(std::int32_t h) {
   const std::int32_t a = editor_.survivor(h);
-  carry_over(a, mesh_.surface.origin(h) + mesh_.surface.target(h) - a);
+  carry_over(a, mesh_.connectivity.origin(h) + mesh_.connectivity.target(h) - a);
   editor_.collapse(h);
   ++counts_.collapsed;
   ++counts_.removed;
@@ -317,11 +308,12 @@ void Remesher::carry_over(std::int32_t a, std::int32_t b) {
 
 void Remesher::merge(std::int32_t h) {
   const std::int32_t a = editor_.survivor(h);
-  const std::int32_t b = mesh_.surface.origin(h) + mesh_.surface.target(h) - a;
+  const std::int32_t b = mesh_.connectivity.origin(h) + mesh_.connectivity.target(h) - a;
   const Eigen::Vector3f p = merged_point(a, b).cast<float>();
   const bool stays = p == mesh_.points[a].head<3>();
   std::vector<std::int32_t> joining;
-  if (stays) editor_.each_corner(b, [&](std::int32_t g) { joining.push_back(g); });
+  if (stays)
+    for (const std::int32_t g : outgoing(mesh_.connectivity, b)) joining.push_back(g);
   mesh_.points[a].head<3>() = p;
   absorb(h);
   if (!stays) push_fan(a);
@@ -342,7 +334,7 @@ Eigen::Vector3f Remesher::middle(std::int32_t a, std::int32_t b) const {
 
 /// New vertices get all that old ones have.
 void Remesher::carry_new_vertices() {
-  while (mesh_.vertex_count() < static_cast<std::int64_t>(mesh_.surface.outgoing.size())) {
+  while (mesh_.vertex_count() < static_cast<std::int64_t>(mesh_.connectivity.outgoing.size())) {
     const auto birth = editor_.births()[mesh_.vertex_count() - first_new_];
     const std::int32_t a = birth.first;
     const std::int32_t b = birth.second;
@@ -360,7 +352,7 @@ void Remesher::carry_new_vertices() {
     mesh_.normals.push_back(normal);
     mesh_.source.push_back(copy ? mesh_.source[a] : kNone);
     mesh_.initial_points.push_back(initial_point);
-    mesh_.surface.part.push_back(mesh_.surface.part[a]);
+    mesh_.part.push_back(mesh_.part[a]);
     if (!mesh_.vertex_filled.empty()) {
       const std::uint8_t filled = mesh_.vertex_filled[a];
       mesh_.vertex_filled.push_back(copy ? filled : filled & mesh_.vertex_filled[b]);
@@ -371,13 +363,13 @@ void Remesher::carry_new_vertices() {
 
 void Remesher::mark_face(std::int32_t f, std::uint8_t filled) {
   if (mesh_.face_filled.empty()) return;
-  mesh_.face_filled.resize(mesh_.surface.triangles.size(), 0);
+  mesh_.face_filled.resize(mesh_.connectivity.triangles.size(), 0);
   mesh_.face_filled[f] = filled;
 }
 
 /// False if a new face would be too small.
 bool Remesher::split(std::int32_t h, double shortest) {
-  const Surface& surface = mesh_.surface;
+  const Connectivity& surface = mesh_.connectivity;
   const std::int32_t t = surface.twin[h];
   const Eigen::Vector3d m = middle(surface.origin(h), surface.target(h)).cast<double>();
   for (const std::int32_t g : {h, t})
@@ -416,11 +408,12 @@ void Remesher::refine(std::span<const std::int32_t> edges, std::int64_t faces, d
     const bool current = mesh_.length2(edge.index) == edge.measure;
     if (!current || !split(edge.index, shortest)) continue;
     const auto v = static_cast<std::int32_t>(mesh_.vertex_count()) - 1;
-    editor_.each_corner(v, [&](std::int32_t h) {
+    for (const std::int32_t h : outgoing(mesh_.connectivity, v)) {
       if (put(h)) std::push_heap(heap.begin(), heap.end());
       const std::int32_t last = prev(h);
-      if (mesh_.surface.twin[last] == kNone && put(last)) std::push_heap(heap.begin(), heap.end());
-    });
+      if (mesh_.connectivity.twin[last] == kNone && put(last))
+        std::push_heap(heap.begin(), heap.end());
+    }
   }
 }
 
@@ -450,7 +443,8 @@ std::vector<std::int32_t> Remesher::order_of_survivors() {
 
 void Remesher::reorder(const std::vector<std::int32_t>& order) {
   std::vector<std::int32_t> faces;
-  mesh_.surface = reordered(mesh_.surface, order, &faces);
+  mesh_.connectivity = reordered(mesh_.connectivity, order, &faces);
+  mesh_.part = gathered(mesh_.part, order);
   mesh_.points = gathered(mesh_.points, order);
   mesh_.normals = gathered(mesh_.normals, order);
   mesh_.source = gathered(mesh_.source, order);
@@ -463,8 +457,8 @@ RemeshCounts Remesher::finish() {
   if (counts_ == RemeshCounts{}) return counts_;
   reorder(order_of_survivors());
   if (!parts_changed_) return counts_;
-  number_parts(mesh_.surface);
-  const std::vector<std::int32_t>& part = mesh_.surface.part;
+  mesh_.part_count = number_parts(mesh_.connectivity, mesh_.part);
+  const std::vector<std::int32_t>& part = mesh_.part;
   if (std::is_sorted(part.begin(), part.end())) return counts_;
   std::vector<std::int32_t> order(part.size());
   std::iota(order.begin(), order.end(), 0);

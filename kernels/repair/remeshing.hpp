@@ -6,14 +6,16 @@
 #include <vector>
 
 #include "kernels/repair/remesh_counts.hpp"
-#include "kernels/surface/surface.hpp"
+#include "kernels/surface/connectivity.hpp"
 #include "kernels/surface/surface_editor.hpp"
 
 namespace semigeo::kernels {
 
 /// A surface on its way through the levels, with all that its vertices carry along.
 struct LevelMesh {
-  Surface surface;                              ///< connectivity; without points
+  Connectivity connectivity;
+  std::vector<std::int32_t> part;  ///< (N) connected part, numbered by first vertex
+  std::int32_t part_count = 0;
   std::vector<Eigen::Vector4f> points;          ///< (N) fourth component 0
   std::vector<Eigen::Vector3f> normals;         ///< (N) unit, or zero
   std::vector<std::int32_t> source;             ///< (N) vertex of level 0, or kNone: inserted
@@ -26,7 +28,7 @@ struct LevelMesh {
   Eigen::Vector3d point(std::int32_t v) const { return points[v].head<3>().cast<double>(); }
   /// Of a half-edge, squared.
   double length2(std::int32_t h) const {
-    return (point(surface.target(h)) - point(surface.origin(h))).squaredNorm();
+    return (point(connectivity.target(h)) - point(connectivity.origin(h))).squaredNorm();
   }
   /// Least height of a face, squared.
   double height2(std::int32_t f) const;
@@ -42,7 +44,7 @@ void find_long_edges(const LevelMesh& mesh, std::int32_t begin, std::int32_t end
 
 /// Rids a mesh of odd triangles. Serial; the cost is that of what is found and of a few linear
 /// passes in `finish`. The result depends on the mesh alone, and is a surface with all that
-/// kernels/surface/surface.hpp promises.
+/// kernels/surface/connectivity.hpp promises.
 /// Source: thesis 5.5, 6.1.1. Differs: the thesis looks at the shortest side only, which passes
 /// over triangles whose corners lie on a line, and removes odd triangles by a decimation that is
 /// not described. Here flat ones are flipped away or collapsed, short sides collapsed, and where

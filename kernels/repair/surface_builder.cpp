@@ -10,8 +10,6 @@
 namespace semigeo::kernels {
 namespace {
 
-using Triangle = std::array<std::int32_t, 3>;
-
 /// Zero, or the middle of the bounding box rounded to a power of ten below its size.
 Eigen::Vector3d choose_origin(const std::vector<Eigen::Vector3d>& points) {
   if (points.empty()) return Eigen::Vector3d::Zero();
@@ -244,19 +242,20 @@ BuiltSurface build_surface(TriangleMesh&& mesh) {
 
   SurfaceRepairs& repairs = built.repairs;
   {
-    const auto before = surface.vertex_count();
+    const std::int64_t before = std::ssize(surface.points);
     const auto new_index = weld(surface.points);
     for (Triangle& t : surface.triangles)
       for (std::int32_t& v : t) v = new_index[v];
-    repairs.welded_vertices = before - surface.vertex_count();
+    repairs.welded_vertices = before - std::ssize(surface.points);
   }
   repairs.degenerate_faces = drop_degenerate(surface.triangles);
-  EdgeGroups groups = group_edges(surface.triangles, surface.vertex_count());
+  const std::int64_t vertex_count = std::ssize(surface.points);
+  EdgeGroups groups = group_edges(surface.triangles, vertex_count);
   if (!is_clean(groups, surface.triangles)) {
-    repairs.duplicate_faces = drop_duplicates(surface.triangles, surface.vertex_count());
-    repairs.flipped_faces = orient(surface.triangles, surface.vertex_count());
-    repairs.nonmanifold_faces = drop_nonmanifold(surface.triangles, surface.vertex_count());
-    groups = group_edges(surface.triangles, surface.vertex_count());
+    repairs.duplicate_faces = drop_duplicates(surface.triangles, vertex_count);
+    repairs.flipped_faces = orient(surface.triangles, vertex_count);
+    repairs.nonmanifold_faces = drop_nonmanifold(surface.triangles, vertex_count);
+    groups = group_edges(surface.triangles, vertex_count);
   }
   surface.triangles.shrink_to_fit();
   surface.twin = pair_twins(groups, surface.triangles.size());

@@ -75,7 +75,7 @@ bool GeodesicBall::settle_next(std::int32_t& vertex, double& distance) {
   return false;
 }
 
-void GeodesicBall::look_round(const Surface& surface, std::span<const Eigen::Vector4f> points,
+void GeodesicBall::look_round(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
                               std::int32_t vertex) {
   ring_.clear();
   const Eigen::Vector3d p = points[vertex].head<3>().cast<double>();
@@ -95,7 +95,7 @@ void GeodesicBall::look_round(const Surface& surface, std::span<const Eigen::Vec
   ring_closed_ = h == start;
 }
 
-void GeodesicBall::spread(const Surface& surface, std::span<const Eigen::Vector4f> points,
+void GeodesicBall::spread(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
                           std::int32_t vertex, bool is_centre, double radius) {
   const double here = known(vertex).distance;
   look_round(surface, points, vertex);

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "kernels/surface/surface.hpp"
+#include "kernels/surface/connectivity.hpp"
 
 namespace semigeo::kernels {
 
@@ -22,8 +22,8 @@ class GeodesicBall {
   /// `radius`, nearest first but for that error, until it returns false. The ring of neighbours of
   /// the centre counts as within the radius, however far. Cost: about 0.2 us a vertex.
   template <typename Visit>
-  void grow(const Surface& surface, std::span<const Eigen::Vector4f> points, std::int32_t centre,
-            double radius, const Visit& visit) {
+  void grow(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
+            std::int32_t centre, double radius, const Visit& visit) {
     start(centre);
     std::int32_t vertex = kNone;
     double distance = 0;
@@ -57,10 +57,10 @@ class GeodesicBall {
 
   void start(std::int32_t centre);
   bool settle_next(std::int32_t& vertex, double& distance);
-  void look_round(const Surface& surface, std::span<const Eigen::Vector4f> points,
+  void look_round(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
                   std::int32_t vertex);
-  void spread(const Surface& surface, std::span<const Eigen::Vector4f> points, std::int32_t vertex,
-              bool is_centre, double radius);
+  void spread(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
+              std::int32_t vertex, bool is_centre, double radius);
   Known& known(std::int32_t vertex);
   void enlarge();
   void offer(std::int32_t vertex, double distance);

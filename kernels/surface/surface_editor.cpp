@@ -2,92 +2,72 @@
 
 #include <algorithm>
 
+#include "kernels/surface/circulators.hpp"
+
 namespace semigeo::kernels {
 
-SurfaceEditor::SurfaceEditor(Surface& surface)
-    : surface_(surface),
-      face_count_(surface.face_count()),
-      vertex_count_(static_cast<std::int64_t>(surface.outgoing.size())) {}
-
-/// The edge that joins a and b, as the half-edge in either direction, or kNone: both fans are
-/// walked side by side, until the smaller one ends.
-std::int32_t SurfaceEditor::between(std::int32_t a, std::int32_t b) const {
-  const std::array<std::int32_t, 2> start = {surface_.outgoing[a], surface_.outgoing[b]};
-  std::array<std::int32_t, 2> h = start;
-  while (true)
-    for (int side = 0; side < 2; ++side) {
-      const std::int32_t sought = side == 0 ? b : a;
-      if (surface_.target(h[side]) == sought) return h[side];
-      if (surface_.origin(prev(h[side])) == sought) return prev(h[side]);
-      h[side] = surface_.ccw(h[side]);
-      if (h[side] == kNone || h[side] == start[side]) return kNone;
-    }
-}
+SurfaceEditor::SurfaceEditor(Connectivity& mesh)
+    : mesh_(mesh), face_count_(mesh.face_count()), vertex_count_(mesh.vertex_count()) {}
 
 /// Whether the fan of a has at least as many faces as that of b. Walks the smaller one.
 bool SurfaceEditor::larger_fan(std::int32_t a, std::int32_t b) const {
-  const std::array<std::int32_t, 2> start = {surface_.outgoing[a], surface_.outgoing[b]};
+  const std::array<std::int32_t, 2> start = {mesh_.outgoing[a], mesh_.outgoing[b]};
   std::array<std::int32_t, 2> at = start;
   while (true)
     for (const int side : {1, 0}) {
-      at[side] = surface_.ccw(at[side]);
+      at[side] = mesh_.ccw(at[side]);
       if (at[side] == kNone || at[side] == start[side]) return side == 1;
     }
 }
 
 std::int32_t SurfaceEditor::from_larger_fan(std::int32_t h) const {
-  const std::int32_t t = surface_.twin[h];
-  return t == kNone || larger_fan(surface_.origin(h), surface_.target(h)) ? h : t;
+  const std::int32_t t = mesh_.twin[h];
+  return t == kNone || larger_fan(mesh_.origin(h), mesh_.target(h)) ? h : t;
 }
 
 std::int32_t SurfaceEditor::survivor(std::int32_t h) const {
-  const std::int32_t a = surface_.origin(h);
-  const std::int32_t b = surface_.target(h);
-  return surface_.twin[h] != kNone || larger_fan(a, b) ? a : b;
+  const std::int32_t a = mesh_.origin(h);
+  const std::int32_t b = mesh_.target(h);
+  return mesh_.twin[h] != kNone || larger_fan(a, b) ? a : b;
 }
 
 SurfaceEditor::Collapse SurfaceEditor::may_collapse(std::int32_t h) const {
-  const std::int32_t t = surface_.twin[h];
-  const std::int32_t a = surface_.origin(h);
-  const std::int32_t b = surface_.target(h);
-  const std::int32_t c = surface_.origin(prev(h));
-  const std::int32_t d = t == kNone ? kNone : surface_.origin(prev(t));
+  const std::int32_t t = mesh_.twin[h];
+  const std::int32_t a = mesh_.origin(h);
+  const std::int32_t b = mesh_.target(h);
+  const std::int32_t c = mesh_.origin(prev(h));
+  const std::int32_t d = t == kNone ? kNone : mesh_.origin(prev(t));
   const auto same_face = [this](std::int32_t g, std::int32_t other) {
-    g = surface_.twin[g];
-    other = surface_.twin[other];
+    g = mesh_.twin[g];
+    other = mesh_.twin[other];
     return g != kNone && other != kNone && face_of(g) == face_of(other);
   };
   if (t == kNone) {
-    if (surface_.twin[next(h)] == kNone && surface_.twin[prev(h)] == kNone)
-      return {Obstacle::part, kNone};
+    if (mesh_.twin[next(h)] == kNone && mesh_.twin[prev(h)] == kNone)
+      return {Obstacle::kPart, kNone};
   } else {
-    if (surface_.on_boundary(a) && surface_.on_boundary(b)) return {Obstacle::chord, kNone};
+    if (mesh_.on_boundary(a) && mesh_.on_boundary(b)) return {Obstacle::kChord, kNone};
     // Faces (b, c, d) and (a, c, d) besides (a, b, c) and (b, a, d): a tetrahedron.
-    if (same_face(next(h), prev(t)) && same_face(prev(h), next(t))) return {Obstacle::part, kNone};
+    if (same_face(next(h), prev(t)) && same_face(prev(h), next(t))) return {Obstacle::kPart, kNone};
   }
-  Collapse result;
   const std::int32_t kept = survivor(h);
-  const auto examine = [&](std::int32_t x) {
-    if (x == kept || x == c || x == d || result.obstacle != Obstacle::none) return;
-    if (between(x, kept) != kNone) result = {Obstacle::cycle, x};
-  };
-  each_corner(kept == a ? b : a, [&](std::int32_t g) {
-    examine(surface_.target(g));
-    if (surface_.twin[prev(g)] == kNone) examine(surface_.origin(prev(g)));
-  });
-  return result;
+  for (const std::int32_t x : neighbours(mesh_, kept == a ? b : a)) {
+    if (x == kept || x == c || x == d) continue;
+    if (find_edge(mesh_, x, kept) != kNone) return {Obstacle::kCycle, x};
+  }
+  return {};
 }
 
 void SurfaceEditor::unite(std::int32_t h, std::int32_t other) {
-  if (h != kNone) surface_.twin[h] = other;
-  if (other != kNone) surface_.twin[other] = h;
+  if (h != kNone) mesh_.twin[h] = other;
+  if (other != kNone) mesh_.twin[other] = h;
 }
 
 /// A face loses the edge opposite to its corner; the half-edges across its other two edges, one
 /// `into` the corner and one `from` it, become twins. `gone` left the corner. result: a half-edge
 /// that leaves the vertex where the lost edge was, or kNone.
 std::int32_t SurfaceEditor::fold(std::int32_t gone, std::int32_t into, std::int32_t from) {
-  std::int32_t& outgoing = surface_.outgoing[surface_.origin(gone)];
+  std::int32_t& outgoing = mesh_.outgoing[mesh_.origin(gone)];
   // On a boundary `gone` had no twin, and `from`, which now has none, is the first of the fan.
   if (outgoing == gone) outgoing = from != kNone ? from : next(into);
   unite(into, from);
@@ -95,98 +75,99 @@ std::int32_t SurfaceEditor::fold(std::int32_t gone, std::int32_t into, std::int3
 }
 
 void SurfaceEditor::remove_face(std::int32_t f) {
-  surface_.triangles[f] = {kNone, kNone, kNone};
-  for (int i = 0; i < 3; ++i) surface_.twin[halfedge(f, i)] = kNone;
+  mesh_.triangles[f] = {kNone, kNone, kNone};
+  for (int i = 0; i < 3; ++i) mesh_.twin[halfedge(f, i)] = kNone;
   free_faces_.push_back(f);
   --face_count_;
 }
 
-std::int32_t SurfaceEditor::add_face(const std::array<std::int32_t, 3>& corners) {
+std::int32_t SurfaceEditor::add_face(const Triangle& corners) {
   ++face_count_;
   if (!free_faces_.empty()) {
     const std::int32_t f = free_faces_.back();
     free_faces_.pop_back();
-    surface_.triangles[f] = corners;
+    mesh_.triangles[f] = corners;
     return f;
   }
-  surface_.triangles.push_back(corners);
-  surface_.twin.resize(surface_.twin.size() + 4, kNone);
-  return static_cast<std::int32_t>(surface_.triangles.size()) - 1;
+  mesh_.triangles.push_back(corners);
+  mesh_.twin.resize(mesh_.twin.size() + 4, kNone);
+  return static_cast<std::int32_t>(mesh_.triangles.size()) - 1;
 }
 
 std::int32_t SurfaceEditor::add_vertex(const Birth& birth) {
   ++vertex_count_;
   births_.push_back(birth);
-  surface_.outgoing.push_back(kNone);
-  return static_cast<std::int32_t>(surface_.outgoing.size()) - 1;
+  mesh_.outgoing.push_back(kNone);
+  return static_cast<std::int32_t>(mesh_.outgoing.size()) - 1;
+}
+
+/// Puts another vertex into the corners of the fan that begins with half-edge `first`.
+void SurfaceEditor::move_fan(std::int32_t first, std::int32_t vertex) {
+  for (const std::int32_t h : OutgoingRange(mesh_, first))
+    mesh_.triangles[face_of(h)][corner_of(h)] = vertex;
 }
 
 void SurfaceEditor::collapse(std::int32_t h) {
-  const std::int32_t t = surface_.twin[h];
+  const std::int32_t t = mesh_.twin[h];
   const std::int32_t kept = survivor(h);
-  const std::int32_t gone = kept == surface_.origin(h) ? surface_.target(h) : surface_.origin(h);
+  const std::int32_t gone = kept == mesh_.origin(h) ? mesh_.target(h) : mesh_.origin(h);
   const std::int32_t first = first_after_collapse(h);
-  std::int32_t corner = surface_.outgoing[gone];
-  const std::int32_t start = corner;
-  do {
-    surface_.triangles[face_of(corner)][corner_of(corner)] = kept;
-    corner = surface_.ccw(corner);
-  } while (corner != kNone && corner != start);
+  move_fan(mesh_.outgoing[gone], kept);
 
   // Face (a, b, c), and (b, a, d) on the other side.
-  std::int32_t left = fold(prev(h), surface_.twin[prev(h)], surface_.twin[next(h)]);
+  std::int32_t left = fold(prev(h), mesh_.twin[prev(h)], mesh_.twin[next(h)]);
   if (t != kNone) {
-    const std::int32_t other = fold(prev(t), surface_.twin[prev(t)], surface_.twin[next(t)]);
+    const std::int32_t other = fold(prev(t), mesh_.twin[prev(t)], mesh_.twin[next(t)]);
     if (left == kNone) left = other;
     remove_face(face_of(t));
   }
   remove_face(face_of(h));
-  surface_.outgoing[gone] = kNone;
-  surface_.outgoing[kept] = first != kNone ? first : left;
+  mesh_.outgoing[gone] = kNone;
+  mesh_.outgoing[kept] = first != kNone ? first : left;
   --vertex_count_;
 }
 
 /// The half-edge with which the fan of the survivor will begin if that lies on a boundary, else
 /// kNone. Nothing is walked: the fan may be large.
 std::int32_t SurfaceEditor::first_after_collapse(std::int32_t h) const {
-  const std::int32_t t = surface_.twin[h];
+  const std::int32_t t = mesh_.twin[h];
   // On a boundary h itself is the first of its origin, and goes.
-  std::int32_t first = surface_.outgoing[surface_.target(h)];
-  if (surface_.twin[first] != kNone) first = surface_.outgoing[surface_.origin(h)];
-  if (surface_.twin[first] != kNone) return kNone;
+  std::int32_t first = mesh_.outgoing[mesh_.target(h)];
+  if (mesh_.twin[first] != kNone) first = mesh_.outgoing[mesh_.origin(h)];
+  if (mesh_.twin[first] != kNone) return kNone;
   // The edge closes up with that of the face's other side.
-  if (first == next(h)) return surface_.twin[prev(h)];
-  if (t != kNone && first == next(t)) return surface_.twin[prev(t)];
+  if (first == next(h)) return mesh_.twin[prev(h)];
+  if (t != kNone && first == next(t)) return mesh_.twin[prev(t)];
   return first;
 }
 
 bool SurfaceEditor::may_flip(std::int32_t h) const {
-  const std::int32_t t = surface_.twin[h];
-  return t != kNone && between(surface_.origin(prev(h)), surface_.origin(prev(t))) == kNone;
+  const std::int32_t t = mesh_.twin[h];
+  return t != kNone && find_edge(mesh_, mesh_.origin(prev(h)), mesh_.origin(prev(t))) == kNone;
 }
 
 std::int32_t SurfaceEditor::flip(std::int32_t h) {
   // (a, b, c) and (b, a, d) become (a, d, c) and (d, b, c).
-  const std::int32_t t = surface_.twin[h];
+  const std::int32_t t = mesh_.twin[h];
   const std::int32_t f = face_of(h);
   const std::int32_t g = face_of(t);
-  const std::int32_t a = surface_.origin(h);
-  const std::int32_t b = surface_.target(h);
-  const std::int32_t c = surface_.origin(prev(h));
-  const std::int32_t d = surface_.origin(prev(t));
+  const std::int32_t a = mesh_.origin(h);
+  const std::int32_t b = mesh_.target(h);
+  const std::int32_t c = mesh_.origin(prev(h));
+  const std::int32_t d = mesh_.origin(prev(t));
   // The four half-edges round them, where they were and where they will be.
   const std::array<std::int32_t, 4> old = {next(t), prev(h), prev(t), next(h)};
   const std::array<std::int32_t, 4> now = {halfedge(f, 0), halfedge(f, 2), halfedge(g, 0),
                                            halfedge(g, 1)};
   std::array<std::int32_t, 4> across;
-  for (int k = 0; k < 4; ++k) across[k] = surface_.twin[old[k]];
+  for (int k = 0; k < 4; ++k) across[k] = mesh_.twin[old[k]];
   const std::array<std::int32_t, 4> vertex = {a, c, d, b};
   for (int k = 0; k < 4; ++k) {
-    std::int32_t& outgoing = surface_.outgoing[vertex[k]];
+    std::int32_t& outgoing = mesh_.outgoing[vertex[k]];
     if (outgoing == old[k] || outgoing == h || outgoing == t) outgoing = now[k];
   }
-  surface_.triangles[f] = {a, d, c};
-  surface_.triangles[g] = {d, b, c};
+  mesh_.triangles[f] = {a, d, c};
+  mesh_.triangles[g] = {d, b, c};
   for (int k = 0; k < 4; ++k) unite(now[k], across[k]);
   unite(halfedge(f, 1), halfedge(g, 2));
   return halfedge(f, 1);
@@ -196,27 +177,23 @@ std::int32_t SurfaceEditor::flip(std::int32_t h) {
 /// at least one in each; if a fan is open, the half-edge with which it begins is among them.
 void SurfaceEditor::separate_fans(std::int32_t v, std::span<const std::int32_t> starts) {
   std::vector<std::int32_t> at(starts.begin(), starts.end());
-  const auto begins = [this](std::int32_t h) { return surface_.twin[h] == kNone; };
+  const auto begins = [this](std::int32_t h) { return mesh_.twin[h] == kNone; };
   // Side by side, until one has been all the way round.
   std::size_t smaller = 0;
   for (bool found = false; !found;)
     for (std::size_t k = 0; k < starts.size() && !found; ++k) {
       if (at[k] == kNone) continue;
-      at[k] = surface_.ccw(at[k]);
+      at[k] = mesh_.ccw(at[k]);
       found = at[k] == starts[k] || (at[k] == kNone && begins(starts[k]));
       smaller = k;
     }
-  const std::int32_t copy = add_vertex({v, kNone});
-  surface_.outgoing[copy] = starts[smaller];
-  std::int32_t h = starts[smaller];
-  do {
-    surface_.triangles[face_of(h)][corner_of(h)] = copy;
-    h = surface_.ccw(h);
-  } while (h != kNone && h != starts[smaller]);
+  const std::int32_t copy = add_vertex({v});
+  mesh_.outgoing[copy] = starts[smaller];
+  move_fan(starts[smaller], copy);
   bool open = false;
   for (const std::int32_t start : starts) {
-    if (surface_.origin(start) != v || open) continue;
-    surface_.outgoing[v] = start;
+    if (mesh_.origin(start) != v || open) continue;
+    mesh_.outgoing[v] = start;
     open = begins(start);
   }
 }
@@ -227,9 +204,9 @@ std::array<std::int32_t, 2> SurfaceEditor::cut_cycle(std::int32_t a, std::int32_
   // Half-edges along the cycle, and those against it.
   std::array<std::array<std::int32_t, 3>, 2> rim;
   for (int i = 0; i < 3; ++i) {
-    const std::int32_t h = between(cycle[i], cycle[(i + 1) % 3]);
-    const std::int32_t t = surface_.twin[h];
-    const bool along = surface_.origin(h) == cycle[i];
+    const std::int32_t h = find_edge(mesh_, cycle[i], cycle[(i + 1) % 3]);
+    const std::int32_t t = mesh_.twin[h];
+    const bool along = mesh_.origin(h) == cycle[i];
     rim[0][i] = along ? h : t;
     rim[1][i] = along ? t : h;
   }
@@ -250,50 +227,115 @@ std::array<std::int32_t, 2> SurfaceEditor::cut_cycle(std::int32_t a, std::int32_
   if (cover[0] == kNone || cover[1] == kNone) return cover;  // a hole closed, no fan in two
   for (int i = 0; i < 3; ++i) {
     // An open fan begins where it did, or with the cover's own edge.
-    const std::int32_t was = surface_.outgoing[cycle[i]];
+    const std::int32_t was = mesh_.outgoing[cycle[i]];
     const std::array starts = {corner[i][0], corner[i][1], was};
-    separate_fans(cycle[i], std::span(starts).first(surface_.twin[was] == kNone ? 3 : 2));
+    separate_fans(cycle[i], std::span(starts).first(mesh_.twin[was] == kNone ? 3 : 2));
   }
   return cover;
 }
 
 void SurfaceEditor::cut_chord(std::int32_t h) {
-  const std::int32_t t = surface_.twin[h];
-  const std::int32_t a = surface_.origin(h);
-  const std::int32_t b = surface_.target(h);
-  surface_.twin[t] = kNone;
-  surface_.twin[h] = kNone;
-  separate_fans(a, std::array{surface_.outgoing[a], h});
-  separate_fans(b, std::array{surface_.outgoing[b], t});
+  const std::int32_t t = mesh_.twin[h];
+  const std::int32_t a = mesh_.origin(h);
+  const std::int32_t b = mesh_.target(h);
+  mesh_.twin[t] = kNone;
+  mesh_.twin[h] = kNone;
+  separate_fans(a, std::array{mesh_.outgoing[a], h});
+  separate_fans(b, std::array{mesh_.outgoing[b], t});
 }
 
 std::int32_t SurfaceEditor::split(std::int32_t h) {
-  const std::int32_t t = surface_.twin[h];
-  const std::int32_t a = surface_.origin(h);
-  const std::int32_t b = surface_.target(h);
+  const std::int32_t t = mesh_.twin[h];
+  const std::int32_t a = mesh_.origin(h);
+  const std::int32_t b = mesh_.target(h);
   const std::int32_t middle = add_vertex({a, b});
   // (a, b, c) becomes (a, m, c) and (m, b, c): `g` goes from `end` to m, the new face takes the
   // edge that left its target.
   const auto halve = [&](std::int32_t g) {
-    const std::int32_t end = surface_.target(g);
-    const std::int32_t apex = surface_.origin(prev(g));
-    const std::int32_t across = surface_.twin[next(g)];
+    const std::int32_t end = mesh_.target(g);
+    const std::int32_t apex = mesh_.origin(prev(g));
+    const std::int32_t across = mesh_.twin[next(g)];
     const std::int32_t f = add_face({middle, end, apex});
-    surface_.triangles[face_of(g)][corner_of(next(g))] = middle;
+    mesh_.triangles[face_of(g)][corner_of(next(g))] = middle;
     unite(halfedge(f, 1), across);
     unite(halfedge(f, 2), next(g));
-    if (surface_.outgoing[end] == next(g)) surface_.outgoing[end] = halfedge(f, 1);
+    if (mesh_.outgoing[end] == next(g)) mesh_.outgoing[end] = halfedge(f, 1);
     return halfedge(f, 0);
   };
   const std::int32_t beyond_h = halve(h);
-  surface_.twin[beyond_h] = t;
+  mesh_.twin[beyond_h] = t;
   if (t != kNone) {
     const std::int32_t beyond_t = halve(t);
     unite(h, beyond_t);
     unite(t, beyond_h);
   }
-  surface_.outgoing[middle] = beyond_h;
+  mesh_.outgoing[middle] = beyond_h;
   return middle;
+}
+
+std::int32_t SurfaceEditor::split_face(std::int32_t face) {
+  const auto [a, b, c] = mesh_.triangles[face];
+  const std::int32_t v = add_vertex({a, b, c});
+  // (a, b, c) becomes (a, b, v), (b, c, v) and (c, a, v).
+  const std::int32_t across_b = mesh_.twin[halfedge(face, 1)];
+  const std::int32_t across_c = mesh_.twin[halfedge(face, 2)];
+  mesh_.triangles[face] = {a, b, v};
+  const std::int32_t f = add_face({b, c, v});
+  const std::int32_t g = add_face({c, a, v});
+  unite(halfedge(f, 0), across_b);
+  unite(halfedge(g, 0), across_c);
+  unite(halfedge(face, 1), halfedge(f, 2));
+  unite(halfedge(f, 1), halfedge(g, 2));
+  unite(halfedge(g, 1), halfedge(face, 2));
+  if (face_of(mesh_.outgoing[b]) == face) mesh_.outgoing[b] = halfedge(f, 0);
+  if (face_of(mesh_.outgoing[c]) == face) mesh_.outgoing[c] = halfedge(g, 0);
+  mesh_.outgoing[v] = halfedge(face, 2);
+  return v;
+}
+
+void SurfaceEditor::remove_vertex(std::int32_t v, std::span<const Triangle> cover) {
+  fan_.clear();
+  for (const std::int32_t h : outgoing(mesh_, v))
+    fan_.push_back({face_of(h), mesh_.target(h), mesh_.origin(prev(h)), mesh_.twin[next(h)]});
+  for (const FanFace& side : fan_)
+    for (int i = 0; i < 3; ++i) {
+      const std::int32_t h = halfedge(side.face, i);
+      if (mesh_.outgoing[mesh_.origin(h)] == h) mesh_.outgoing[mesh_.origin(h)] = kNone;
+    }
+  for (std::size_t k = 0; k < fan_.size(); ++k) {
+    if (k >= cover.size()) {
+      remove_face(fan_[k].face);
+      continue;
+    }
+    mesh_.triangles[fan_[k].face] = cover[k];
+    for (int i = 0; i < 3; ++i) mesh_.twin[halfedge(fan_[k].face, i)] = kNone;
+  }
+  --vertex_count_;
+  link_cover(cover);
+}
+
+/// Sets the twins of the faces that took the first slots of the fan, and the outgoing half-edges of
+/// their corners.
+void SurfaceEditor::link_cover(std::span<const Triangle> cover) {
+  const auto halfedge_from = [&](std::int32_t a, std::int32_t b) {
+    for (std::size_t k = 0; k < cover.size(); ++k)
+      for (int i = 0; i < 3; ++i)
+        if (cover[k][i] == a && cover[k][(i + 1) % 3] == b) return halfedge(fan_[k].face, i);
+    return kNone;
+  };
+  for (const FanFace& side : fan_)
+    if (side.across != kNone) unite(halfedge_from(side.from, side.to), side.across);
+  for (std::size_t k = 0; k < cover.size(); ++k)
+    for (int i = 0; i < 3; ++i) {
+      const std::int32_t h = halfedge(fan_[k].face, i);
+      if (mesh_.twin[h] == kNone) mesh_.twin[h] = halfedge_from(mesh_.target(h), mesh_.origin(h));
+    }
+  for (std::size_t k = 0; k < cover.size(); ++k)
+    for (int i = 0; i < 3; ++i) {
+      const std::int32_t h = halfedge(fan_[k].face, i);
+      std::int32_t& chosen = mesh_.outgoing[cover[k][i]];
+      if (chosen == kNone || mesh_.twin[h] == kNone) chosen = h;
+    }
 }
 
 SurfaceEditor::Dropped SurfaceEditor::drop_part(std::int32_t face) {
@@ -304,9 +346,9 @@ SurfaceEditor::Dropped SurfaceEditor::drop_part(std::int32_t face) {
     pending.pop_back();
     if (!has_face(f)) continue;
     for (int i = 0; i < 3; ++i) {
-      const std::int32_t t = surface_.twin[halfedge(f, i)];
+      const std::int32_t t = mesh_.twin[halfedge(f, i)];
       if (t != kNone) pending.push_back(face_of(t));
-      std::int32_t& outgoing = surface_.outgoing[surface_.triangles[f][i]];
+      std::int32_t& outgoing = mesh_.outgoing[mesh_.triangles[f][i]];
       if (outgoing == kNone) continue;
       outgoing = kNone;
       ++dropped.vertices;

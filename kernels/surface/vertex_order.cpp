@@ -6,6 +6,40 @@
 #include "kernels/surface/z_order.hpp"
 
 namespace semigeo::kernels {
+namespace {
+
+/// Returns the place of each of `size` indices in `order`, or kNone for those that are missing.
+std::vector<std::int32_t> positions(const std::vector<std::int32_t>& order, std::size_t size) {
+  std::vector<std::int32_t> result(size, kNone);
+  for (std::size_t i = 0; i < order.size(); ++i) result[order[i]] = static_cast<std::int32_t>(i);
+  return result;
+}
+
+/// Returns the mesh whose vertex i is old vertex `vertices`[i] and whose face i is old face
+/// `faces`[i]; `new_vertex` is the inverse of `vertices`.
+Connectivity renumbered(const Connectivity& mesh, const std::vector<std::int32_t>& vertices,
+                        const std::vector<std::int32_t>& new_vertex,
+                        const std::vector<std::int32_t>& faces) {
+  const std::vector<std::int32_t> new_face = positions(faces, mesh.triangles.size());
+  const auto moved = [&](std::int32_t h) {
+    return h == kNone ? kNone : halfedge(new_face[face_of(h)], corner_of(h));
+  };
+  Connectivity result;
+  result.triangles.resize(faces.size());
+  result.twin.assign(4 * faces.size(), kNone);
+  for (std::size_t k = 0; k < faces.size(); ++k)
+    for (int i = 0; i < 3; ++i) {
+      const std::int32_t h = halfedge(faces[k], i);
+      result.triangles[k][i] = new_vertex[mesh.origin(h)];
+      result.twin[halfedge(static_cast<std::int32_t>(k), i)] = moved(mesh.twin[h]);
+    }
+  result.outgoing.resize(vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    result.outgoing[i] = moved(mesh.outgoing[vertices[i]]);
+  return result;
+}
+
+}  // namespace
 
 std::vector<std::int32_t> locality_order(const Surface& surface) {
   if (surface.points.empty()) return {};
@@ -40,55 +74,40 @@ std::vector<std::int32_t> locality_order(const Surface& surface) {
   return order;
 }
 
-Surface reordered(const Surface& surface, const std::vector<std::int32_t>& order,
-                  std::vector<std::int32_t>* face_order) {
-  Surface result;
-  const std::size_t n = order.size();
-  if (!surface.points.empty()) result.points.resize(n);
-  result.part.resize(n);
-  result.part_count = surface.part_count;
-  std::vector<std::int32_t> new_vertex(surface.outgoing.size(), kNone);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!surface.points.empty()) result.points[i] = surface.points[order[i]];
-    result.part[i] = surface.part[order[i]];
-    new_vertex[order[i]] = static_cast<std::int32_t>(i);
-  }
-
+Connectivity reordered(const Connectivity& mesh, const std::vector<std::int32_t>& order,
+                       std::vector<std::int32_t>* face_order) {
+  const std::vector<std::int32_t> new_vertex = positions(order, mesh.outgoing.size());
   // Counting sort of the faces by lowest new vertex.
-  const auto lowest = [&](const std::array<std::int32_t, 3>& t) {
+  const auto lowest = [&](const Triangle& t) {
     return std::min({new_vertex[t[0]], new_vertex[t[1]], new_vertex[t[2]]});
   };
-  std::vector<std::int32_t> cursor(n + 1, 0);
-  std::size_t face_count = 0;
-  for (const auto& t : surface.triangles) {
-    if (t[0] == kNone) continue;
-    ++cursor[lowest(t) + 1];
-    ++face_count;
-  }
-  for (std::size_t v = 0; v < n; ++v) cursor[v + 1] += cursor[v];
-  std::vector<std::int32_t> new_face(surface.triangles.size(), kNone);
-  result.triangles.resize(face_count);
-  if (face_order != nullptr) face_order->resize(face_count);
-  for (std::size_t f = 0; f < surface.triangles.size(); ++f) {
-    const auto& t = surface.triangles[f];
-    if (t[0] == kNone) continue;
-    new_face[f] = cursor[lowest(t)]++;
-    result.triangles[new_face[f]] = {new_vertex[t[0]], new_vertex[t[1]], new_vertex[t[2]]};
-    if (face_order != nullptr) (*face_order)[new_face[f]] = static_cast<std::int32_t>(f);
-  }
-
-  const auto moved = [&](std::int32_t h) {
-    return h == kNone ? kNone : halfedge(new_face[face_of(h)], corner_of(h));
-  };
-  result.twin.assign(4 * face_count, kNone);
-  for (std::size_t f = 0; f < surface.triangles.size(); ++f)
-    for (int i = 0; i < 3 && new_face[f] != kNone; ++i) {
-      const std::int32_t h = halfedge(static_cast<std::int32_t>(f), i);
-      result.twin[moved(h)] = moved(surface.twin[h]);
-    }
-  result.outgoing.resize(n);
-  for (std::size_t i = 0; i < n; ++i) result.outgoing[i] = moved(surface.outgoing[order[i]]);
+  std::vector<std::int32_t> cursor(order.size() + 1, 0);
+  for (const Triangle& t : mesh.triangles)
+    if (t[0] != kNone) ++cursor[lowest(t) + 1];
+  for (std::size_t v = 0; v < order.size(); ++v) cursor[v + 1] += cursor[v];
+  std::vector<std::int32_t> faces(cursor.back());
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
+    if (mesh.triangles[f][0] != kNone)
+      faces[cursor[lowest(mesh.triangles[f])]++] = static_cast<std::int32_t>(f);
+  Connectivity result = renumbered(mesh, order, new_vertex, faces);
+  if (face_order != nullptr) *face_order = std::move(faces);
   return result;
+}
+
+Connectivity compacted(const Connectivity& mesh, std::vector<std::int32_t>& source_vertex) {
+  source_vertex.clear();
+  for (std::size_t v = 0; v < mesh.outgoing.size(); ++v)
+    if (mesh.outgoing[v] != kNone) source_vertex.push_back(static_cast<std::int32_t>(v));
+  std::vector<std::int32_t> faces;
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
+    if (mesh.triangles[f][0] != kNone) faces.push_back(static_cast<std::int32_t>(f));
+  return renumbered(mesh, source_vertex, positions(source_vertex, mesh.outgoing.size()), faces);
+}
+
+Surface reordered(const Surface& surface, const std::vector<std::int32_t>& order,
+                  std::vector<std::int32_t>* face_order) {
+  return {reordered(static_cast<const Connectivity&>(surface), order, face_order),
+          gathered(surface.points, order), gathered(surface.part, order), surface.part_count};
 }
 
 }  // namespace semigeo::kernels

@@ -8,16 +8,23 @@
 
 namespace semigeo::kernels {
 
-/// An order of the vertices in which neighbours in space are neighbours in memory: by connected
-/// part, then along a Z-order curve. result[i] = old index of new vertex i. A patch then finds all
-/// it touches in the first-level cache, and every part is one range of vertices.
+/// Returns an order of the vertices in which neighbours in space are neighbours in memory: by
+/// connected part, then along a Z-order curve. result[i] is the old index of new vertex i. A patch
+/// then finds all it touches in the first-level cache, and every part is one range of vertices.
 std::vector<std::int32_t> locality_order(const Surface& surface);
 
-/// The same surface with vertex i = old vertex order[i]; faces are sorted by their lowest new
-/// vertex, so every part is also one range of faces. Connectivity follows; parts keep their numbers
-/// when the order is one of `locality_order`. Gaps are closed: vertices without faces may be left
-/// out, faces whose corners are kNone are. Without points the result has none. `face_order` takes
-/// the old index of each face.
+/// Returns the same mesh with vertex i = old vertex order[i]. Faces are sorted by their lowest new
+/// vertex. Gaps are closed: vertices without faces may be left out of the order, removed faces are
+/// left out. `face_order` takes the old index of each face. Linear cost.
+Connectivity reordered(const Connectivity& mesh, const std::vector<std::int32_t>& order,
+                       std::vector<std::int32_t>* face_order = nullptr);
+
+/// Returns the mesh without gaps: what is left of vertices and faces, each in its old order.
+/// `source_vertex` takes the old index of each vertex. Linear cost.
+Connectivity compacted(const Connectivity& mesh, std::vector<std::int32_t>& source_vertex);
+
+/// Returns the same surface in another order, as above. Parts keep their numbers when the order is
+/// one of `locality_order`; then every part is also one range of faces.
 Surface reordered(const Surface& surface, const std::vector<std::int32_t>& order,
                   std::vector<std::int32_t>* face_order = nullptr);
 

@@ -5,14 +5,14 @@
 #include <utility>
 #include <vector>
 
-#include "kernels/surface/surface.hpp"
+#include "kernels/surface/connectivity.hpp"
 
 namespace semigeo::tests {
 
-/// The first promise of kernels/surface/surface.hpp that the connectivity of a surface breaks, in
-/// words; empty if it is sound. Gaps that editing leaves (corners and `outgoing` kNone) are passed
-/// over.
-inline std::string fault_of(const kernels::Surface& s) {
+/// The first promise of kernels/surface/connectivity.hpp that the connectivity of a surface breaks,
+/// in words; empty if it is sound. Gaps that editing leaves (corners and `outgoing` kNone) are
+/// passed over.
+inline std::string fault_of(const kernels::Connectivity& s) {
   using namespace kernels;
   const auto name = [](std::int32_t h) { return "half-edge " + std::to_string(h); };
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> directed;
@@ -54,7 +54,7 @@ inline std::string fault_of(const kernels::Surface& s) {
 }
 
 /// Vertices - edges + faces.
-inline std::int64_t euler_characteristic(const kernels::Surface& s) {
+inline std::int64_t euler_characteristic(const kernels::Connectivity& s) {
   std::int64_t sum = 0;
   for (const std::int32_t h : s.outgoing) sum += h != kernels::kNone;
   for (std::int32_t f = 0; f < s.face_count(); ++f) {

@@ -22,21 +22,24 @@ kernels::LevelMesh rough_sphere(double noise) {
   const double edge = kernels::mean_edge_length(prepared(sphere));
   shapes::add_noise(sphere, noise * edge, 1);
   kernels::LevelMesh mesh;
-  mesh.surface = prepared(std::move(sphere));
-  for (const Eigen::Vector3f& p : mesh.surface.points) {
+  kernels::Surface surface = prepared(std::move(sphere));
+  for (const Eigen::Vector3f& p : surface.points) {
     mesh.points.emplace_back(p.x(), p.y(), p.z(), 0.0f);
     mesh.normals.push_back(p.normalized());
     mesh.source.push_back(static_cast<std::int32_t>(mesh.source.size()));
   }
-  mesh.initial_points = std::exchange(mesh.surface.points, {});
+  mesh.initial_points = std::move(surface.points);
+  mesh.part = std::move(surface.part);
+  mesh.part_count = surface.part_count;
+  mesh.connectivity = std::move(surface);
   return mesh;
 }
 
 double mean_edge(const kernels::LevelMesh& mesh) {
   double sum = 0;
-  for (std::int32_t f = 0; f < mesh.surface.face_count(); ++f)
+  for (std::int32_t f = 0; f < mesh.connectivity.face_count(); ++f)
     for (int i = 0; i < 3; ++i) sum += std::sqrt(mesh.length2(kernels::halfedge(f, i)));
-  return sum / (3 * static_cast<double>(mesh.surface.face_count()));
+  return sum / (3 * static_cast<double>(mesh.connectivity.face_count()));
 }
 
 /// Removes what is below `shortest` mean edge lengths; if `refine`, splits the longest
@@ -44,7 +47,7 @@ double mean_edge(const kernels::LevelMesh& mesh) {
 void remesh(benchmark::State& state, double shortest, bool refine) {
   const kernels::LevelMesh rough = rough_sphere(0.3);
   const double edge = mean_edge(rough);
-  const auto faces = static_cast<std::int32_t>(rough.surface.face_count());
+  const auto faces = static_cast<std::int32_t>(rough.connectivity.face_count());
   kernels::RemeshCounts counts;
   for (auto _ : state) {
     state.PauseTiming();
@@ -56,8 +59,8 @@ void remesh(benchmark::State& state, double shortest, bool refine) {
     remesher.remove_odd(odd, shortest * edge);
     if (refine) {
       std::vector<std::int32_t> edges;
-      kernels::find_long_edges(mesh, 0, static_cast<std::int32_t>(mesh.surface.face_count()), edge,
-                               edges);
+      kernels::find_long_edges(mesh, 0, static_cast<std::int32_t>(mesh.connectivity.face_count()),
+                               edge, edges);
       remesher.refine(edges, faces, edge, 2 * shortest * edge);
     }
     counts = remesher.finish();
@@ -89,7 +92,7 @@ void find_odd_faces(benchmark::State& state) {
   std::vector<std::int32_t> odd;
   for (auto _ : state) {
     odd.clear();
-    kernels::find_odd_faces(mesh, 0, static_cast<std::int32_t>(mesh.surface.face_count()),
+    kernels::find_odd_faces(mesh, 0, static_cast<std::int32_t>(mesh.connectivity.face_count()),
                             0.1 * edge, odd);
     benchmark::DoNotOptimize(odd.data());
   }

@@ -15,7 +15,7 @@ struct Order {
 };
 
 /// A triangle of features, in the order in which they were chosen.
-struct Triangle {
+struct MeasuredTriangle {
   std::array<std::uint16_t, 3> features;
   std::array<double, 3> values;
   std::array<double, 3> sides;  ///< opposite each
@@ -26,7 +26,7 @@ bool collinear(const std::array<Eigen::Vector3d, 3>& p, double longest, double m
   return !(twice_area > min_height * longest * longest);
 }
 
-ThesisTriplet triplet_of(const Triangle& t, const Order& order) {
+ThesisTriplet triplet_of(const MeasuredTriangle& t, const Order& order) {
   ThesisTriplet result;
   const auto& c = order.corners;
   for (int i = 0; i < 3; ++i) result.corners[i] = t.features[c[i]];
@@ -46,7 +46,7 @@ ThesisTriplet triplet_of(const Triangle& t, const Order& order) {
 }
 
 /// Whether sides descend and the strongest is the strongest, but for these tolerances.
-bool in_order(const Triangle& t, const Order& order, double length, double feature) {
+bool in_order(const MeasuredTriangle& t, const Order& order, double length, double feature) {
   const auto& c = order.corners;
   const double longest = t.sides[c[0]];
   const double strongest = std::abs(t.values[c[order.strongest]]);
@@ -61,7 +61,7 @@ constexpr std::array<std::array<int, 3>, 6> kPermutations = {
     {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
 
 /// The one order of a model: of equal sides and values the first.
-Order order_of(const Triangle& t) {
+Order order_of(const MeasuredTriangle& t) {
   Order order{{0, 1, 2}, 0};
   std::ranges::stable_sort(order.corners, std::ranges::greater(),
                            [&](int i) { return t.sides[i]; });
@@ -71,7 +71,7 @@ Order order_of(const Triangle& t) {
   return order;
 }
 
-void add_triplets(const Triangle& t, const ThesisOptions& options, bool every_order,
+void add_triplets(const MeasuredTriangle& t, const ThesisOptions& options, bool every_order,
                   std::vector<ThesisTriplet>& result) {
   if (!every_order) {
     result.push_back(triplet_of(t, order_of(t)));
@@ -107,7 +107,8 @@ std::vector<ThesisTriplet> thesis_triplets(const OrientedFeatures& features,
   for (std::size_t a = 0; a < chosen.size(); ++a)
     for (std::size_t b = a + 1; b < chosen.size(); ++b)
       for (std::size_t c = b + 1; c < chosen.size(); ++c) {
-        Triangle triangle{.features = {chosen[a], chosen[b], chosen[c]}, .values = {}, .sides = {}};
+        MeasuredTriangle triangle{
+            .features = {chosen[a], chosen[b], chosen[c]}, .values = {}, .sides = {}};
         std::array<Eigen::Vector3d, 3> p;
         for (int i = 0; i < 3; ++i) {
           const OrientedFeature& feature = features.features[triangle.features[i]];

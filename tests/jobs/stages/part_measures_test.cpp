@@ -18,9 +18,13 @@ using kernels::TriangleMesh;
 kernels::LevelMesh level_mesh(const TriangleMesh& mesh) {
   kernels::LevelMesh result;
   const kernels::BuiltSurface built = kernels::build_surface(TriangleMesh(mesh));
-  result.surface = kernels::reordered(built.surface, kernels::locality_order(built.surface));
+  const kernels::Surface surface =
+      kernels::reordered(built.surface, kernels::locality_order(built.surface));
+  result.connectivity = surface;
+  result.part = surface.part;
+  result.part_count = surface.part_count;
   const Eigen::Vector3f origin = built.origin.cast<float>();
-  for (const auto& p : result.surface.points) {
+  for (const auto& p : surface.points) {
     result.points.push_back(Eigen::Vector4f::Zero());
     result.points.back().head<3>() = p + origin;
   }

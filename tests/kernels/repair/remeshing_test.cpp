@@ -23,47 +23,49 @@ using tests::fault_of;
 LevelMesh level_mesh(TriangleMesh mesh) {
   LevelMesh result;
   const Surface built = build_surface(std::move(mesh)).surface;
-  result.surface = reordered(built, locality_order(built));
-  for (const auto& p : result.surface.points) result.points.push_back({p.x(), p.y(), p.z(), 0});
-  for (std::int32_t v = 0; v < result.surface.vertex_count(); ++v)
-    result.normals.push_back(angle_weighted_normal(result.surface, result.points, v));
-  result.initial_points = std::exchange(result.surface.points, {});
+  const Surface surface = reordered(built, locality_order(built));
+  result.connectivity = surface;
+  result.part = surface.part;
+  result.part_count = surface.part_count;
+  for (const auto& p : surface.points) result.points.push_back({p.x(), p.y(), p.z(), 0});
+  for (std::int32_t v = 0; v < surface.vertex_count(); ++v)
+    result.normals.push_back(angle_weighted_normal(surface, result.points, v));
+  result.initial_points = surface.points;
   result.source.resize(result.points.size());
   std::iota(result.source.begin(), result.source.end(), 0);
   return result;
 }
 
 void expect_sound(const LevelMesh& mesh) {
-  EXPECT_EQ(fault_of(mesh.surface), "");
+  EXPECT_EQ(fault_of(mesh.connectivity), "");
   const std::size_t n = mesh.points.size();
-  EXPECT_EQ(mesh.surface.outgoing.size(), n);
+  EXPECT_EQ(mesh.connectivity.outgoing.size(), n);
   EXPECT_EQ(mesh.normals.size(), n);
   EXPECT_EQ(mesh.source.size(), n);
   EXPECT_EQ(mesh.initial_points.size(), n);
-  ASSERT_EQ(mesh.surface.part.size(), n);
-  for (const auto h : mesh.surface.outgoing) EXPECT_NE(h, kNone);
+  ASSERT_EQ(mesh.part.size(), n);
+  for (const auto h : mesh.connectivity.outgoing) EXPECT_NE(h, kNone);
   // Parts as they are after any numbering anew, one range of vertices and of faces each.
-  Surface numbered = mesh.surface;
-  number_parts(numbered);
-  EXPECT_EQ(numbered.part, mesh.surface.part);
-  EXPECT_EQ(numbered.part_count, mesh.surface.part_count);
-  EXPECT_TRUE(std::ranges::is_sorted(mesh.surface.part));
+  std::vector<std::int32_t> numbered;
+  EXPECT_EQ(number_parts(mesh.connectivity, numbered), mesh.part_count);
+  EXPECT_EQ(numbered, mesh.part);
+  EXPECT_TRUE(std::ranges::is_sorted(mesh.part));
   std::vector<std::int32_t> part_of_face;
-  for (const auto& t : mesh.surface.triangles) part_of_face.push_back(mesh.surface.part[t[0]]);
+  for (const auto& t : mesh.connectivity.triangles) part_of_face.push_back(mesh.part[t[0]]);
   EXPECT_TRUE(std::ranges::is_sorted(part_of_face));
 }
 
 /// Least height of all faces; no side is shorter.
 double shortest(const LevelMesh& mesh) {
   double height2 = 1e300;
-  for (std::int32_t f = 0; f < mesh.surface.face_count(); ++f)
+  for (std::int32_t f = 0; f < mesh.connectivity.face_count(); ++f)
     height2 = std::min(height2, mesh.height2(f));
   return std::sqrt(height2);
 }
 
 RemeshCounts remove_odd_faces(LevelMesh& mesh, double length) {
   std::vector<std::int32_t> faces;
-  find_odd_faces(mesh, 0, static_cast<std::int32_t>(mesh.surface.face_count()), length, faces);
+  find_odd_faces(mesh, 0, static_cast<std::int32_t>(mesh.connectivity.face_count()), length, faces);
   Remesher remesher(mesh, true);
   remesher.remove_odd(faces, length);
   return remesher.finish();
@@ -72,7 +74,8 @@ RemeshCounts remove_odd_faces(LevelMesh& mesh, double length) {
 RemeshCounts refine_to(LevelMesh& mesh, std::int64_t faces, double longest, double least,
                        bool curved = true) {
   std::vector<std::int32_t> edges;
-  find_long_edges(mesh, 0, static_cast<std::int32_t>(mesh.surface.face_count()), longest, edges);
+  find_long_edges(mesh, 0, static_cast<std::int32_t>(mesh.connectivity.face_count()), longest,
+                  edges);
   Remesher remesher(mesh, curved);
   remesher.refine(edges, faces, longest, least);
   return remesher.finish();
@@ -121,9 +124,9 @@ TriangleMesh dumbbell(double bar) {
 
 TEST(RemeshingTest, WithoutOddFacesNothingHappens) {
   LevelMesh mesh = level_mesh(shapes::icosphere(3));
-  const auto triangles = mesh.surface.triangles;
+  const auto triangles = mesh.connectivity.triangles;
   EXPECT_EQ(remove_odd_faces(mesh, 0.1), RemeshCounts{});
-  EXPECT_EQ(mesh.surface.triangles, triangles);
+  EXPECT_EQ(mesh.connectivity.triangles, triangles);
 }
 
 TEST(RemeshingTest, NoOddFaceIsLeft) {
@@ -146,10 +149,10 @@ TEST(RemeshingTest, CollapsingKeepsASphereASphere) {
   const double edge = 0.06;
   remove_odd_faces(mesh, edge);
   expect_sound(mesh);
-  EXPECT_EQ(euler_characteristic(mesh.surface), 2);
+  EXPECT_EQ(euler_characteristic(mesh.connectivity), 2);
   for (const auto& p : mesh.points) EXPECT_NEAR(p.head<3>().norm(), 1, 4e-3);
   // No face is turned inwards.
-  for (const auto& t : mesh.surface.triangles) {
+  for (const auto& t : mesh.connectivity.triangles) {
     const Eigen::Vector3d a = mesh.point(t[0]);
     EXPECT_GT((mesh.point(t[1]) - a).cross(mesh.point(t[2]) - a).dot(a), 0);
   }
@@ -159,9 +162,9 @@ TEST(RemeshingTest, AThinNeckTearsAndBothEndsAreClosed) {
   LevelMesh mesh = level_mesh(dumbbell(0.02));
   const RemeshCounts counts = remove_odd_faces(mesh, 0.06);
   expect_sound(mesh);
-  EXPECT_EQ(mesh.surface.part_count, 2);
+  EXPECT_EQ(mesh.part_count, 2);
   EXPECT_GE(counts.torn, 1);
-  EXPECT_EQ(euler_characteristic(mesh.surface), 4);
+  EXPECT_EQ(euler_characteristic(mesh.connectivity), 4);
   // What is above comes from above.
   const LevelMesh before = level_mesh(dumbbell(0.02));
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
@@ -176,7 +179,7 @@ TEST(RemeshingTest, AThickNeckHolds) {
   LevelMesh mesh = level_mesh(dumbbell(0.4));
   const RemeshCounts counts = remove_odd_faces(mesh, 0.06);
   expect_sound(mesh);
-  EXPECT_EQ(mesh.surface.part_count, 1);
+  EXPECT_EQ(mesh.part_count, 1);
   EXPECT_EQ(counts.torn, 0);
 }
 
@@ -185,19 +188,19 @@ TEST(RemeshingTest, AThinHandleOpens) {
   const RemeshCounts counts = remove_odd_faces(mesh, 0.08);
   expect_sound(mesh);
   EXPECT_GE(counts.torn, 1);
-  EXPECT_EQ(euler_characteristic(mesh.surface), 2 * mesh.surface.part_count);
+  EXPECT_EQ(euler_characteristic(mesh.connectivity), 2 * mesh.part_count);
 }
 
 TEST(RemeshingTest, ASmallHoleClosesAndALargeOneStays) {
   TriangleMesh sphere = shapes::icosphere(4);
   sphere.triangles.erase(sphere.triangles.begin() + 100);
   LevelMesh mesh = level_mesh(sphere);
-  EXPECT_EQ(euler_characteristic(mesh.surface), 1);
+  EXPECT_EQ(euler_characteristic(mesh.connectivity), 1);
   remove_odd_faces(mesh, 0.02);
-  EXPECT_EQ(euler_characteristic(mesh.surface), 1);
+  EXPECT_EQ(euler_characteristic(mesh.connectivity), 1);
   remove_odd_faces(mesh, 0.12);
   expect_sound(mesh);
-  EXPECT_EQ(euler_characteristic(mesh.surface), 2);
+  EXPECT_EQ(euler_characteristic(mesh.connectivity), 2);
 }
 
 TEST(RemeshingTest, ABoundaryKeepsItsPlace) {
@@ -211,7 +214,7 @@ TEST(RemeshingTest, ABoundaryKeepsItsPlace) {
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
     const Eigen::Vector4f& p = mesh.points[v];
     reach = std::max<double>(reach, p.head<2>().cwiseAbs().maxCoeff());
-    if (mesh.surface.on_boundary(static_cast<std::int32_t>(v))) {
+    if (mesh.connectivity.on_boundary(static_cast<std::int32_t>(v))) {
       EXPECT_NEAR(p.head<2>().cwiseAbs().maxCoeff(), 1, 1e-6);
     }
   }
@@ -231,7 +234,7 @@ TEST(RemeshingTest, ARibbonOfShortRungsIsCutToPieces) {
   expect_sound(mesh);
   EXPECT_GE(counts.torn, 8);
   EXPECT_GE(shortest(mesh), 0.05);
-  EXPECT_EQ(mesh.surface.part_count, 1);  // the wide end
+  EXPECT_EQ(mesh.part_count, 1);  // the wide end
   for (const auto& p : mesh.points) EXPECT_GT(p.x(), 0.85);
 }
 
@@ -263,7 +266,7 @@ TEST(RemeshingTest, AFaceIsNotTurnedOverIfThereIsAnotherWay) {
   remesher.remove_odd({{face_of(edges.front())}}, 0.1001);
   remesher.finish();
   expect_sound(mesh);
-  for (const auto& t : mesh.surface.triangles) {
+  for (const auto& t : mesh.connectivity.triangles) {
     const Eigen::Vector3d a = mesh.point(t[0]);
     EXPECT_GT((mesh.point(t[1]) - a).cross(mesh.point(t[2]) - a).z(), 0);
   }
@@ -290,7 +293,7 @@ TEST(RemeshingTest, AFlatFaceIsFlippedAway) {
   EXPECT_GT(counts.flipped, 20);
   EXPECT_EQ(counts.torn, 0);
   EXPECT_LT(counts.collapsed, 10);  // where the edge lies on the rim
-  for (const auto& t : mesh.surface.triangles) {
+  for (const auto& t : mesh.connectivity.triangles) {
     const Eigen::Vector3d a = mesh.point(t[0]);
     EXPECT_GT((mesh.point(t[1]) - a).cross(mesh.point(t[2]) - a).z(), 0);
   }
@@ -325,7 +328,7 @@ TEST(RemeshingTest, AVertexInsideATriangleOfShortEdgesGoesWithoutACut) {
   expect_sound(mesh);
   EXPECT_EQ(counts.torn, 0);
   EXPECT_EQ(counts.dropped_parts, 0);
-  EXPECT_EQ(euler_characteristic(mesh.surface), 2);
+  EXPECT_EQ(euler_characteristic(mesh.connectivity), 2);
 }
 
 TEST(RemeshingTest, WhatCollapsesIsDroppedButForTheLast) {
@@ -346,7 +349,7 @@ TEST(RemeshingTest, WhatCollapsesIsDroppedButForTheLast) {
   for (std::int32_t v = 0; v < 4; ++v) centre += mesh.point(v) / 4;
   EXPECT_LT(std::min(centre.norm(), (centre - Eigen::Vector3d(5, 0, 0)).norm()), 0.01);
   for (std::int32_t f = 0; f < 4; ++f) {
-    const auto& t = mesh.surface.triangles[f];
+    const auto& t = mesh.connectivity.triangles[f];
     const Eigen::Vector3d a = mesh.point(t[0]);
     EXPECT_GT((mesh.point(t[1]) - a).cross(mesh.point(t[2]) - a).dot(a - centre), 0);
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(std::sqrt(mesh.length2(halfedge(f, i))), 10, 1e-5);
@@ -367,7 +370,7 @@ TEST(RemeshingTest, RefiningHalvesTheLongestEdgesOntoTheSurface) {
     const auto vertices = mesh.vertex_count();
     const RemeshCounts counts = refine_to(mesh, 2000, 0.01, 0.01, curved);
     expect_sound(mesh);
-    EXPECT_EQ(mesh.surface.face_count(), 2000);
+    EXPECT_EQ(mesh.connectivity.face_count(), 2000);
     EXPECT_EQ(counts.split, 360);
     EXPECT_EQ(mesh.vertex_count(), vertices + 360);
     EXPECT_EQ(std::ranges::count(mesh.source, kNone), 360);
@@ -381,7 +384,7 @@ TEST(RemeshingTest, RefiningHalvesTheLongestEdgesOntoTheSurface) {
       EXPECT_GT(worst, 2e-3);
     }
     std::vector<double> lengths;
-    for (std::int32_t f = 0; f < mesh.surface.face_count(); ++f)
+    for (std::int32_t f = 0; f < mesh.connectivity.face_count(); ++f)
       for (int i = 0; i < 3; ++i) lengths.push_back(mesh.length2(halfedge(f, i)));
     EXPECT_LT(std::sqrt(*std::ranges::max_element(lengths)), 0.166);
   }
@@ -392,7 +395,7 @@ TEST(RemeshingTest, RefiningMakesNoShortEdges) {
   refine_to(mesh, 1000000, 0.02, 0.05);
   expect_sound(mesh);
   EXPECT_GE(shortest(mesh), 0.05);
-  EXPECT_LT(mesh.surface.face_count(), 1000000);
+  EXPECT_LT(mesh.connectivity.face_count(), 1000000);
 }
 
 TEST(RemeshingTest, NewVerticesComeNextToThoseTheyComeFrom) {
@@ -430,21 +433,21 @@ TEST(RemeshingTest, PlacesOnLevelZeroAreCarriedAlong) {
 TEST(RemeshingTest, MarksOfFilledVerticesAndFacesAreCarriedAlong) {
   LevelMesh mesh = level_mesh(shapes::icosphere(3));
   for (const auto& p : mesh.points) mesh.vertex_filled.push_back(p.z() > 0);
-  for (const auto& t : mesh.surface.triangles)
+  for (const auto& t : mesh.connectivity.triangles)
     mesh.face_filled.push_back(mesh.vertex_filled[t[0]] & mesh.vertex_filled[t[1]] &
                                mesh.vertex_filled[t[2]]);
   refine_to(mesh, 2500, 0.01, 0.01);
   remove_odd_faces(mesh, 0.08);
   expect_sound(mesh);
   ASSERT_EQ(mesh.vertex_filled.size(), mesh.points.size());
-  ASSERT_EQ(mesh.face_filled.size(), mesh.surface.triangles.size());
+  ASSERT_EQ(mesh.face_filled.size(), mesh.connectivity.triangles.size());
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
     if (std::abs(mesh.points[v].z()) > 0.2) {
       EXPECT_EQ(mesh.vertex_filled[v], mesh.points[v].z() > 0);
     }
   for (std::size_t f = 0; f < mesh.face_filled.size(); ++f) {
     double height = 0;
-    for (const auto v : mesh.surface.triangles[f]) height += mesh.points[v].z() / 3;
+    for (const auto v : mesh.connectivity.triangles[f]) height += mesh.points[v].z() / 3;
     if (std::abs(height) > 0.3) {
       EXPECT_EQ(mesh.face_filled[f], height > 0);
     }

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "kernels/repair/surface_builder.hpp"
+#include "kernels/surface/circulators.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/soundness.hpp"
 
@@ -66,7 +67,7 @@ TEST(SurfaceEditorTest, ACollapseTakesAVertexAndTwoFaces) {
   const std::int32_t h = halfedge(17, 1);
   const std::int32_t kept = s.origin(h);
   const std::int32_t gone = s.target(h);
-  ASSERT_EQ(editor.may_collapse(h).obstacle, Obstacle::none);
+  ASSERT_EQ(editor.may_collapse(h).obstacle, Obstacle::kNothing);
   editor.collapse(h);
   EXPECT_EQ(fault_of(s), "");
   EXPECT_TRUE(editor.has_vertex(kept));
@@ -81,7 +82,7 @@ TEST(SurfaceEditorTest, ABoundaryEdgeCollapsesAlongTheBoundary) {
   SurfaceEditor editor(s);
   std::int32_t h = 0;
   while (s.twin[h] != kNone || h % 4 == 3) ++h;
-  ASSERT_EQ(editor.may_collapse(h).obstacle, Obstacle::none);
+  ASSERT_EQ(editor.may_collapse(h).obstacle, Obstacle::kNothing);
   editor.collapse(h);
   EXPECT_EQ(fault_of(s), "");
   EXPECT_EQ(editor.face_count(), 31);
@@ -90,16 +91,16 @@ TEST(SurfaceEditorTest, ABoundaryEdgeCollapsesAlongTheBoundary) {
 
 TEST(SurfaceEditorTest, TheLastTetrahedronAndTheLastTriangleDoNotCollapse) {
   Surface solid = built(tetrahedron());
-  EXPECT_EQ(SurfaceEditor(solid).may_collapse(0).obstacle, Obstacle::part);
+  EXPECT_EQ(SurfaceEditor(solid).may_collapse(0).obstacle, Obstacle::kPart);
   Surface single = built({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
-  EXPECT_EQ(SurfaceEditor(single).may_collapse(0).obstacle, Obstacle::part);
+  EXPECT_EQ(SurfaceEditor(single).may_collapse(0).obstacle, Obstacle::kPart);
   // Three of the four faces: the fourth vertex may go.
   TriangleMesh cap = tetrahedron();
   cap.triangles.pop_back();
   Surface open = built(cap);
   SurfaceEditor editor(open);
   const std::int32_t h = editor.from_larger_fan(edge_between(open, 0, 1));
-  ASSERT_EQ(editor.may_collapse(h).obstacle, Obstacle::none);
+  ASSERT_EQ(editor.may_collapse(h).obstacle, Obstacle::kNothing);
   editor.collapse(h);
   EXPECT_EQ(fault_of(open), "");
   EXPECT_EQ(editor.face_count(), 1);
@@ -110,7 +111,7 @@ TEST(SurfaceEditorTest, ANeckOfThreeEdgesIsCutAndCovered) {
   SurfaceEditor editor(s);
   const std::int32_t h = edge_between(s, 6, 7);
   const auto check = editor.may_collapse(h);
-  ASSERT_EQ(check.obstacle, Obstacle::cycle);
+  ASSERT_EQ(check.obstacle, Obstacle::kCycle);
   ASSERT_EQ(check.third, 8);
   const auto covers = editor.cut_cycle(6, 7, 8);
   EXPECT_EQ(fault_of(s), "");
@@ -120,7 +121,7 @@ TEST(SurfaceEditorTest, ANeckOfThreeEdgesIsCutAndCovered) {
   EXPECT_EQ(parts_of(s), 2);
   // Now the edge collapses on both sides.
   for (const std::int32_t f : covers)
-    EXPECT_EQ(editor.may_collapse(halfedge(f, 0)).obstacle, Obstacle::none);
+    EXPECT_EQ(editor.may_collapse(halfedge(f, 0)).obstacle, Obstacle::kNothing);
 }
 
 TEST(SurfaceEditorTest, ACutThroughAHandleOpensIt) {
@@ -130,7 +131,7 @@ TEST(SurfaceEditorTest, ACutThroughAHandleOpensIt) {
   SurfaceEditor editor(s);
   for (std::int32_t f = 0; f < 72; ++f) {
     const auto check = editor.may_collapse(halfedge(f, 0));
-    if (check.obstacle != Obstacle::cycle) continue;
+    if (check.obstacle != Obstacle::kCycle) continue;
     editor.cut_cycle(s.origin(halfedge(f, 0)), s.target(halfedge(f, 0)), check.third);
     break;
   }
@@ -155,7 +156,7 @@ TEST(SurfaceEditorTest, AStripIsCutAcross) {
                      {{0, 1, 3}, {1, 4, 3}, {1, 2, 4}, {2, 5, 4}}});
   SurfaceEditor editor(s);
   const std::int32_t h = edge_between(s, 1, 4);
-  ASSERT_EQ(editor.may_collapse(h).obstacle, Obstacle::chord);
+  ASSERT_EQ(editor.may_collapse(h).obstacle, Obstacle::kChord);
   editor.cut_chord(h);
   EXPECT_EQ(fault_of(s), "");
   EXPECT_EQ(parts_of(s), 2);
@@ -206,6 +207,65 @@ TEST(SurfaceEditorTest, AFlipTurnsAnEdgeToTheOtherDiagonal) {
   EXPECT_FALSE(SurfaceEditor(solid).may_flip(0));  // that edge is there already
 }
 
+TEST(SurfaceEditorTest, AFaceIsSplitIntoThree) {
+  Surface s = built(shapes::plane(1, 3));
+  SurfaceEditor editor(s);
+  const Triangle corners = s.triangles[4];
+  const std::int32_t v = editor.split_face(4);
+  EXPECT_EQ(fault_of(s), "");
+  EXPECT_EQ(editor.face_count(), 20);
+  EXPECT_EQ(editor.vertex_count(), 17);
+  EXPECT_EQ(v, 16);
+  EXPECT_EQ(s.triangles[4], (Triangle{corners[0], corners[1], v}));
+  EXPECT_EQ(s.triangles[18], (Triangle{corners[1], corners[2], v}));
+  EXPECT_EQ(s.triangles[19], (Triangle{corners[2], corners[0], v}));
+  const auto birth = editor.births().front();
+  EXPECT_EQ((Triangle{birth.first, birth.second, birth.third}), corners);
+}
+
+/// A cover of the faces round v: a fan from its first neighbour; empty if that joins what is joined
+/// already.
+std::vector<Triangle> fan_cover(const Surface& s, std::int32_t v) {
+  std::vector<std::int32_t> ring;
+  for (const std::int32_t w : neighbours(s, v)) ring.push_back(w);
+  std::vector<Triangle> cover;
+  for (std::size_t k = 1; k + 1 < ring.size(); ++k) {
+    const bool is_side = k + 2 == ring.size() && !s.on_boundary(v);
+    if (!is_side && find_edge(s, ring[0], ring[k + 1]) != kNone) return {};
+    cover.push_back({ring[0], ring[k], ring[k + 1]});
+  }
+  return cover;
+}
+
+TEST(SurfaceEditorTest, VerticesAreRemovedOneAfterTheOther) {
+  for (const bool open : {false, true}) {
+    Surface s = built(open ? shapes::plane(1, 4) : shapes::icosphere(1));
+    const auto vertices = static_cast<std::int32_t>(s.vertex_count());
+    SurfaceEditor editor(s);
+    int removed = 0;
+    for (std::int32_t v = 0; v < vertices; ++v) {
+      const std::vector<std::int32_t> faces = [&] {
+        std::vector<std::int32_t> result;
+        for (const std::int32_t h : outgoing(s, v)) result.push_back(face_of(h));
+        return result;
+      }();
+      const std::vector<Triangle> cover = fan_cover(s, v);
+      if (cover.empty()) continue;
+      editor.remove_vertex(v, cover);
+      ++removed;
+      ASSERT_EQ(fault_of(s), "") << "vertex " << v;
+      EXPECT_FALSE(editor.has_vertex(v));
+      EXPECT_EQ(editor.vertex_count(), vertices - removed);
+      for (std::size_t k = 0; k < faces.size(); ++k) {
+        ASSERT_EQ(editor.has_face(faces[k]), k < cover.size());
+        if (k < cover.size()) EXPECT_EQ(s.triangles[faces[k]], cover[k]);
+      }
+      EXPECT_EQ(euler_characteristic(s), open ? 1 : 2);
+    }
+    EXPECT_GE(removed, vertices / 3);
+  }
+}
+
 TEST(SurfaceEditorTest, APartIsDroppedWhole) {
   TriangleMesh mesh = tetrahedron();
   for (const auto& p : shapes::icosphere(1).points) mesh.points.push_back(p);
@@ -235,23 +295,26 @@ TEST(SurfaceEditorTest, AnySequenceOfEditsLeavesASurface) {
         if (!editor.has_face(f)) continue;
         std::int32_t h = halfedge(f, static_cast<int>(random() % 3));
         if (random() % 8 < static_cast<unsigned>(run)) {
-          editor.split(h);
+          if (random() % 4 == 0)
+            editor.split_face(f);
+          else
+            editor.split(h);
         } else if (random() % 3 == 0) {
           if (editor.may_flip(h)) editor.flip(h);
         } else {
           h = editor.from_larger_fan(h);
           const auto check = editor.may_collapse(h);
           switch (check.obstacle) {
-            case Obstacle::none:
+            case Obstacle::kNothing:
               editor.collapse(h);
               break;
-            case Obstacle::cycle:
+            case Obstacle::kCycle:
               editor.cut_cycle(s.origin(h), s.target(h), check.third);
               break;
-            case Obstacle::chord:
+            case Obstacle::kChord:
               editor.cut_chord(h);
               break;
-            case Obstacle::part:
+            case Obstacle::kPart:
               editor.drop_part(f);
               break;
           }

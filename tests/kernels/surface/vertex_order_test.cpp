@@ -5,8 +5,9 @@
 #include <algorithm>
 
 #include "kernels/repair/surface_builder.hpp"
-#include "kernels/surface/edge_groups.hpp"
+#include "kernels/surface/surface_editor.hpp"
 #include "tests/support/shapes.hpp"
+#include "tests/support/soundness.hpp"
 
 namespace semigeo::kernels {
 namespace {
@@ -36,18 +37,33 @@ TEST(VertexOrderTest, ConnectivityFollows) {
   const Surface s = build_surface(two_spheres()).surface;
   const auto order = locality_order(s);
   const Surface r = reordered(s, order);
-  Surface fresh;
-  fresh.points = r.points;
-  fresh.triangles = r.triangles;
-  fresh.twin =
-      pair_twins(group_edges(fresh.triangles, fresh.vertex_count()), fresh.triangles.size());
-  connect(fresh);
+  const Connectivity fresh = connect(r.triangles, r.vertex_count());
+  std::vector<std::int32_t> part;
+  EXPECT_EQ(number_parts(fresh, part), r.part_count);
   EXPECT_EQ(r.twin, fresh.twin);
-  EXPECT_EQ(r.part, fresh.part);
+  EXPECT_EQ(r.part, part);
   for (std::int32_t v = 0; v < r.vertex_count(); ++v) {
     EXPECT_EQ(r.origin(r.outgoing[v]), v);
     EXPECT_EQ(r.points[v], s.points[order[v]]);
   }
+}
+
+TEST(VertexOrderTest, GapsAreClosedAndTheOrderStays) {
+  Surface s = build_surface(two_spheres()).surface;
+  SurfaceEditor(s).drop_part(0);
+  std::vector<std::int32_t> source;
+  const Connectivity c = compacted(s, source);
+  EXPECT_EQ(tests::fault_of(c), "");
+  EXPECT_TRUE(std::is_sorted(source.begin(), source.end()));
+  std::size_t next_face = 0;
+  for (const Triangle& t : s.triangles) {
+    if (t[0] == kNone) continue;
+    ASSERT_LT(next_face, c.triangles.size());
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(source[c.triangles[next_face][i]], t[i]);
+    ++next_face;
+  }
+  EXPECT_EQ(next_face, c.triangles.size());
+  EXPECT_EQ(c.vertex_count(), 162);
 }
 
 TEST(VertexOrderTest, NeighboursComeCloser) {
