@@ -59,8 +59,8 @@ std::vector<Case> measure(const AnalyticOptions& options) {
             const jobs::EvolutionOptions evolution{
                 .curved = surface == "curved",
                 .coordinates = coordinates_of(coordinates),
-                .schedule = options.schedule == "octaves" ? jobs::Schedule::octaves
-                                                          : jobs::Schedule::uniform,
+                .schedule = options.schedule == "octaves" ? jobs::Schedule::kOctaves
+                                                          : jobs::Schedule::kUniform,
                 .remesh = false};  // the truth is known per vertex
             const shapes::AnalyticMesh exact = shapes::tessellate(shape, kind, vertices);
             const double edge = shapes::mean_edge_length(exact.mesh);

@@ -54,7 +54,7 @@ void evolve(kernels::TriangleMesh mesh, const DirectionOptions& options, engine:
   jobs::EvolvingSurface evolving(surface.surface,
                                  {.curved = curved,
                                   .coordinates = coordinates_of(options.coordinates),
-                                  .rescale = jobs::Rescale::edges,
+                                  .rescale = jobs::Rescale::kEdges,
                                   .remesh = false},  // vertices must stay what they are
                                  {workers, observer, {}});
   const std::set<int> wanted(options.iterations.begin(), options.iterations.end());

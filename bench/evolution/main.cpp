@@ -69,15 +69,15 @@ class Clock : public engine::Observer {
 };
 
 jobs::EvolutionOptions evolution_options(const Options& options) {
-  return {
-      .curved = options.surface == "curved",
-      .coordinates = options.coordinates == "polar" ? kernels::Coordinates::polar
-                                                    : kernels::Coordinates::semigeodesic,
-      .schedule = options.schedule == "octaves" ? jobs::Schedule::octaves : jobs::Schedule::uniform,
-      .rescale = options.rescale == "size"    ? jobs::Rescale::size
-                 : options.rescale == "edges" ? jobs::Rescale::edges
-                                              : jobs::Rescale::none,
-      .remesh = !options.no_remesh};
+  return {.curved = options.surface == "curved",
+          .coordinates = options.coordinates == "polar" ? kernels::Coordinates::polar
+                                                        : kernels::Coordinates::semigeodesic,
+          .schedule =
+              options.schedule == "octaves" ? jobs::Schedule::kOctaves : jobs::Schedule::kUniform,
+          .rescale = options.rescale == "size"    ? jobs::Rescale::kSize
+                     : options.rescale == "edges" ? jobs::Rescale::kEdges
+                                                  : jobs::Rescale::kNone,
+          .remesh = !options.no_remesh};
 }
 
 /// The name and the mesh of one scan, read or made.

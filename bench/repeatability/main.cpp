@@ -123,7 +123,7 @@ bool measure(const fs::path& path, const Options& options, const engine::RunCont
 
 int run(Options options) {
   options.search.evolution.schedule =
-      options.schedule == "octaves" ? jobs::Schedule::octaves : jobs::Schedule::uniform;
+      options.schedule == "octaves" ? jobs::Schedule::kOctaves : jobs::Schedule::kUniform;
   options.search.evolution.coordinates = options.coordinates == "polar"
                                              ? kernels::Coordinates::polar
                                              : kernels::Coordinates::semigeodesic;

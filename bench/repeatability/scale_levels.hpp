@@ -30,8 +30,8 @@ struct ScaleLevel {
 struct FeatureSearch {
   std::vector<double> radii = {0, 1, 1.5, 2};  ///< in scales
   bool strong = false;  ///< maxima only where |K| sigma^2 >= 0.01 or |H| sigma >= 0.1
-  jobs::EvolutionOptions evolution = {.schedule = jobs::Schedule::octaves,
-                                      .rescale = jobs::Rescale::none};
+  jobs::EvolutionOptions evolution = {.schedule = jobs::Schedule::kOctaves,
+                                      .rescale = jobs::Rescale::kNone};
 };
 
 /// Goes on until there are `levels` levels and the scale of the last is at least `last_scale`, but

@@ -22,7 +22,8 @@ namespace fs = std::filesystem;
 using Models = std::map<std::string, LibraryModel>;
 
 struct LibraryOptions {
-  RunOptions run;  ///< config.archive: the library's home
+  RunConfig config;  ///< Its archive is the folder that the library lies in.
+  ExecutionOptions execution;
   std::string library;
   std::vector<std::string> inputs;  ///< archives and datasets, or names of models
 };
@@ -100,14 +101,15 @@ std::vector<LibraryModel> in_order(const Models& models) {
 /// Makes the library of the models that `models` names once the library's home is ours.
 int make(LibraryOptions& options, const LibraryPlace& place,
          const std::function<std::vector<LibraryModel>(DigestCache&)>& models) {
-  options.run.config.archive = place.home;
+  options.config.archive = place.home;
   const auto plan_of = [&](DigestCache& cache) {
     std::vector<PlannedJob> plan;
-    plan_library(plan, models(cache), place, options.run.config.jobs.recognition);
-    if (options.run.verify) verify_library_plan(plan);
+    plan_library(plan, models(cache), place, options.config.jobs.recognition);
+    if (options.execution.verify) verify_library_plan(plan);
     return plan;
   };
-  return run_plan(options.run, {.plan = plan_of, .is_archive = place.home != place.parts});
+  return run_plan(options.execution, options.config,
+                  {.plan = plan_of, .is_archive = place.home != place.parts});
 }
 
 int build(LibraryOptions& options) {
@@ -128,7 +130,7 @@ int add(LibraryOptions& options) {
   io::library_key(place.library);  // refuses what is none, before anything is made
   const Models added = models_in(options.inputs);
   return make(options, place, [&](DigestCache&) {
-    Models models = kept_models(place, options.run.config.jobs.recognition);
+    Models models = kept_models(place, options.config.jobs.recognition);
     for (const auto& [name, model] : added) models[name] = model;
     return in_order(models);
   });
@@ -138,7 +140,7 @@ int remove(LibraryOptions& options) {
   const LibraryPlace place = place_at(options.library);
   io::library_key(place.library);
   return make(options, place, [&](DigestCache&) {
-    Models models = kept_models(place, options.run.config.jobs.recognition);
+    Models models = kept_models(place, options.config.jobs.recognition);
     for (const std::string& name : options.inputs)
       if (models.erase(name) == 0)
         throw io::Error(place.library, "", "has no model " + name,
@@ -151,7 +153,7 @@ int remove(LibraryOptions& options) {
 
 int list(const LibraryOptions& options) {
   const io::HashLibrary library(options.library);
-  if (options.run.json) {
+  if (options.execution.json) {
     auto models = nlohmann::json::array();
     for (const io::ModelInfo& model : library.models())
       models.push_back({{"name", model.name},
@@ -180,7 +182,7 @@ int check(const LibraryOptions& options) {
   if (!fs::exists(options.library, ignored))
     throw io::Error(options.library, "", "no such file", "check the path");
   const std::string problem = verify_libraries({options.library}).front();
-  if (options.run.json) {
+  if (options.execution.json) {
     nlohmann::json document = {{"file", options.library}, {"ok", problem.empty()}};
     if (!problem.empty()) document["error"] = problem;
     print_document(document);
@@ -214,10 +216,11 @@ void add_maker(CLI::App* parent, const char* name, const char* about, const char
                      "The library, if it is not ARCHIVE/library.h5; LIBRARY.parts beside it keeps\n"
                      "the triplets of its models")
         ->configurable(false);
-  add_job_options(command, options->run);
+  add_execution_options(*command, options->execution);
   command->fallthrough();
   command->callback([options, action, is_build, &exit_code] {
-    apply_words(options->run);
+    settle(options->execution);
+    options->config.threads = options->execution.limits.threads;
     if (!is_build) options->library = library_file(options->library);
     exit_code = action(*options);
   });
@@ -230,7 +233,7 @@ void add_reader(CLI::App* parent, const char* name, const char* about,
   CLI::App* command = parent->add_subcommand(name, about);
   command->add_option("library", options->library, "The library, or an archive that has one")
       ->required();
-  command->add_flag("--json", options->run.json, "As JSON");
+  command->add_flag("--json", options->execution.json, "As JSON");
   command->callback([options, action, &exit_code] {
     options->library = library_file(options->library);
     exit_code = action(*options);

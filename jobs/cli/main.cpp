@@ -58,6 +58,7 @@ int run(int argc, char** argv) {
   add_check(app, exit_code);
   add_export(app, exit_code);
   add_job(app, exit_code);
+  add_options_page(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

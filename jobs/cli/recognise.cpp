@@ -9,6 +9,7 @@
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/recognise_report.hpp"
 #include "jobs/cli/run_plan.hpp"
+#include "jobs/cli/table_options.hpp"
 #include "jobs/cli/temporary_folder.hpp"
 #include "jobs/plan/recognise_plan.hpp"
 #include "jobs/stages/recognised_file.hpp"
@@ -19,30 +20,32 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RecogniseOptions {
-  RunOptions run;  ///< config.archive: the folder that keeps what was recognised
+  RunConfig config;  ///< Its archive is the folder that keeps what was recognised.
+  ExecutionOptions execution;
   std::string library;
   std::string output;  ///< empty: nothing is kept
-  std::string method = "overlap";
-  std::optional<double> min_score;
+  SearchParameters search;
+  std::optional<double> min_score;  ///< Taken instead of that of `search` if it was given.
   std::size_t top = RecogniseReport{}.top;
 };
 
-void apply(RecogniseOptions& options) {
-  apply_words(options.run);
-  if (options.output.empty() && options.run.where == "slurm")
+void settle(RecogniseOptions& options) {
+  settle(options.execution);
+  options.config.threads = options.execution.limits.threads;
+  if (options.output.empty() && options.execution.executor == ExecutorKind::kSlurm)
     throw CLI::ValidationError("--output", "give a folder that all machines see with Slurm");
-  SearchParameters& search = options.run.config.jobs.search;
-  if (options.method == "thesis") search.method = RecognitionMethod::kThesis;
+  SearchParameters& search = options.search;
   search.min_score = options.min_score.value_or(default_min_score(search.method));
   if (!(search.min_score >= 0) || !std::isfinite(search.min_score))
     throw CLI::ValidationError("--min-score", "give a number that is not negative");
+  options.config.jobs.search = search;
 }
 
 /// Not the archives at hand, unless they are named: their datasets are the models.
 std::vector<FoundScan> scenes_of(const RecogniseOptions& options, const SearchedLibrary& library) {
   std::vector<fs::path> passed_over = {library.path.parent_path()};
   if (!options.output.empty()) passed_over.emplace_back(options.output);
-  return find_scenes(options.run.config.inputs, passed_over);
+  return find_scenes(options.config.inputs, passed_over);
 }
 
 int recognise(RecogniseOptions& options) {
@@ -62,13 +65,13 @@ int recognise(RecogniseOptions& options) {
   }
   std::optional<TemporaryFolder> temporary;
   if (options.output.empty()) temporary.emplace();
-  RunConfig& config = options.run.config;
+  RunConfig& config = options.config;
   const fs::path folder = temporary ? temporary->path() : fs::path(options.output);
   config.archive = folder;
   config.jobs.recognition = library.parameters;
   const RecogniseReport report = {.top = options.top, .has_files = !temporary};
   return run_plan(
-      options.run,
+      options.execution, config,
       {.plan =
            [&](DigestCache&) {
              return plan_recognition(scenes, library, config.jobs.search, folder, config.threads);
@@ -79,14 +82,14 @@ int recognise(RecogniseOptions& options) {
        .print =
            [&](const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,
                const RunSummary& summary) {
-             const auto print = options.run.json ? print_recognised_json : print_recognised;
+             const auto print = options.execution.json ? print_recognised_json : print_recognised;
              print(plan, outcomes, summary, library, report);
            }});
 }
 
 void add_options(CLI::App* command, RecogniseOptions& options) {
   command
-      ->add_option("scenes", options.run.config.inputs,
+      ->add_option("scenes", options.config.inputs,
                    "Scans (.ply .obj .off .stl, each also .gz), datasets (.vtkhdf), folders")
       ->default_str("")
       ->required()
@@ -102,11 +105,7 @@ void add_options(CLI::App* command, RecogniseOptions& options) {
           "Keep what was recognised: FOLDER/recognised/<scene>.json. What is there and up\n"
           "to date is not computed again. The folder may be an archive")
       ->configurable(false);
-  command
-      ->add_option("--method", options.method,
-                   "How: surfaces are laid onto each other, or the thesis' votes and clusters,\n"
-                   "which name one model, even if none is there")
-      ->check(CLI::IsMember({"overlap", "thesis"}));
+  add_table_options(*command, search_parameter_table(), options.search);
   command
       ->add_option("--min-score", options.min_score,
                    "A model with less is not in the scene; 0 names the best, whatever it is")
@@ -115,7 +114,7 @@ void add_options(CLI::App* command, RecogniseOptions& options) {
       ->add_option("--top", options.top,
                    "Models of the ranking to print; " + std::to_string(kMostRanked) + " at most")
       ->check(CLI::Range(std::size_t{0}, kMostRanked));
-  add_job_options(command, options.run);
+  add_execution_options(*command, options.execution);
 }
 
 }  // namespace
@@ -141,7 +140,7 @@ void add_recognise(CLI::App& app, int& exit_code) {
   add_options(command, *options);
   command->fallthrough();
   command->callback([options, &exit_code] {
-    apply(*options);
+    settle(*options);
     exit_code = recognise(*options);
   });
 }

@@ -5,14 +5,22 @@
 #include "io/files/atomic_file.hpp"
 #include "io/files/error.hpp"
 #include "jobs/cli/command.hpp"
-#include "jobs/cli/run_options.hpp"
 #include "jobs/cli/run_plan.hpp"
+#include "jobs/cli/surface_options.hpp"
 #include "jobs/plan/library_plan.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// What the command line says.
+struct RunOptions {
+  RunConfig config;
+  SurfaceOptions surface;
+  ExecutionOptions execution;
+  bool library = false;  ///< A library of all datasets of the archive is made as well.
+};
 
 /// The first time, puts the configuration into the archive; notes whose datasets it holds. What
 /// fails here fails before the hours of work.
@@ -30,7 +38,7 @@ std::vector<PlannedJob> make_plan(const RunOptions& options, const std::vector<F
   if (options.library)
     plan_library(plan, models_of(archive, plan, cache), place_of_archive(archive),
                  options.config.jobs.recognition);
-  if (options.verify) {
+  if (options.execution.verify) {
     verify_plan(plan, options.config.threads);
     verify_library_plan(plan);
   }
@@ -49,12 +57,38 @@ int find_and_run(const RunOptions& options, const std::string& effective_config)
     std::fprintf(stderr, "semigeo: no .ply, .obj, .off or .stl file (or .gz of one) was found\n");
     return kUsage;
   }
-  return run_plan(options,
+  return run_plan(options.execution, options.config,
                   {.plan = [&](DigestCache& cache) { return make_plan(options, scans, cache); },
                    .prepare =
                        [&](const std::vector<PlannedJob>& plan) {
                          prepare_archive(options.config.archive, effective_config, plan);
                        }});
+}
+
+void add_options(CLI::App* command, RunOptions& options) {
+  RunConfig& config = options.config;
+  command
+      ->add_option("scans", config.inputs,
+                   "Scans (.ply .obj .off .stl, each also .gz) and folders of them")
+      ->default_str("")
+      ->required()
+      ->configurable(false);
+  command->add_option("-o,--output", config.archive, "The archive: a folder, made if need be")
+      ->required()
+      ->configurable(false);
+  add_surface_options(*command, options.surface);
+  command->add_flag(
+      "--library", options.library,
+      "Also build ARCHIVE/library.h5, in which scenes are recognised, of all datasets\n"
+      "of the archive");
+  add_execution_options(*command, options.execution);
+}
+
+void settle(RunOptions& options) {
+  settle(options.execution);
+  settle(options.surface);
+  options.config.jobs.surface = options.surface.parameters;
+  options.config.threads = options.execution.limits.threads;
 }
 
 }  // namespace
@@ -80,11 +114,11 @@ void add_run(CLI::App& app, int& exit_code) {
       "failed,\n"
       "2 usage, 73 another run has the archive, 75 stopped early: run again to go on. The first\n"
       "Ctrl-C lets the running jobs end, the second ends them.\n");
-  add_run_options(command, *options);
+  add_options(command, *options);
   command->fallthrough();
   command->callback([options, &exit_code] {
-    apply_words(*options);
-    exit_code = find_and_run(*options, config_text(*options));
+    settle(*options);
+    exit_code = find_and_run(*options, config_text(options->surface));
   });
 }
 

@@ -76,12 +76,13 @@ void learn(const fs::path& archive, const std::vector<PlannedJob>& plan,
   if (learned) or_say([&] { learn_estimates(archive).write(archive); });
 }
 
-int dry_run(const RunOptions& options, const PlanSource& source) {
-  DigestCache cache(options.config.archive);
+int dry_run(const ExecutionOptions& options, const RunConfig& config, const PlanSource& source) {
+  DigestCache cache(config.archive);
   const std::vector<PlannedJob> plan = source.plan(cache);
-  if (!options.dag.empty()) {
+  if (options.graph != GraphFormat::kNone) {
     const std::vector<GraphNode> graph = graph_of(plan);
-    std::fputs((options.dag == "dot" ? to_dot(graph) : to_json(graph)).c_str(), stdout);
+    std::fputs((options.graph == GraphFormat::kDot ? to_dot(graph) : to_json(graph)).c_str(),
+               stdout);
   } else {
     print_plan(plan, options.json, options.explain);
   }
@@ -95,33 +96,32 @@ std::uintmax_t total_bytes(const std::vector<PlannedJob>& plan) {
 }
 
 /// Here, or where `options` says. `stages` are what was left to Slurm.
-std::vector<JobOutcome> execute(const RunOptions& options, const std::vector<PlannedJob>& plan,
-                                Progress& progress, RunJournal* journal,
-                                std::vector<SubmittedStage>& stages) {
-  ExecutorOptions executor = options.executor;
+std::vector<JobOutcome> execute(const ExecutionOptions& options, const RunConfig& config,
+                                const std::vector<PlannedJob>& plan, Progress& progress,
+                                RunJournal* journal, std::vector<SubmittedStage>& stages) {
+  ExecutorOptions executor = options.limits;
   executor.program = fs::read_symlink("/proc/self/exe");
-  executor.logs = options.config.archive / "logs";
-  executor.threads = options.config.threads;
-  executor.estimates = Estimates::read(options.config.archive);
-  if (options.where == "local")
-    return run_jobs(plan, options.config.jobs, executor, progress, journal);
-  SlurmOutcome outcome = run_on_slurm(plan, options.config.jobs, options.config.archive, executor,
-                                      options.slurm, progress, journal);
+  executor.logs = config.archive / "logs";
+  executor.estimates = Estimates::read(config.archive);
+  if (options.executor == ExecutorKind::kLocal)
+    return run_jobs(plan, config.jobs, executor, progress, journal);
+  SlurmOutcome outcome =
+      run_on_slurm(plan, config.jobs, config.archive, executor, options.slurm, progress, journal);
   stages = std::move(outcome.stages);
   return std::move(outcome.jobs);
 }
 
 /// Runs what is not up to date, and tells `journal`, if there is one.
-std::vector<JobOutcome> run_jobs_of(const RunOptions& options, const std::vector<PlannedJob>& plan,
-                                    RunJournal* journal, RunSummary& summary,
-                                    std::vector<SubmittedStage>& stages) {
+std::vector<JobOutcome> run_jobs_of(const ExecutionOptions& options, const RunConfig& config,
+                                    const std::vector<PlannedJob>& plan, RunJournal* journal,
+                                    RunSummary& summary, std::vector<SubmittedStage>& stages) {
   std::vector<JobOutcome> outcomes(plan.size());
   if (summary.up_to_date == std::ssize(plan)) {
     for (JobOutcome& outcome : outcomes) outcome.state = JobState::kUpToDate;
     return outcomes;
   }
   Progress progress(std::ssize(plan) - summary.up_to_date, total_bytes(plan));
-  outcomes = execute(options, plan, progress, journal, stages);
+  outcomes = execute(options, config, plan, progress, journal, stages);
   summary.vertex_levels = progress.vertex_levels();
   const auto count = [&](JobState state) {
     return std::ranges::count(outcomes, state, &JobOutcome::state);
@@ -140,13 +140,13 @@ std::vector<JobOutcome> run_jobs_of(const RunOptions& options, const std::vector
 
 /// What workers of a run that was killed have left, who may have lived a moment into this one; and
 /// what a library is not made of any more.
-void clean_up(const RunOptions& options, const std::vector<PlannedJob>& plan,
-              const std::vector<JobOutcome>& outcomes) {
+void clean_up(const ExecutionOptions& options, const RunConfig& config,
+              const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes) {
   std::set<fs::path> folders;
   for (const PlannedJob& planned : plan) folders.insert(planned.job.output.parent_path());
   for (const fs::path& folder : folders) io::remove_stale_partials(folder);
   if (!options.slurm.wait) return;
-  remove_empty_logs(options.config.archive / "logs");
+  remove_empty_logs(config.archive / "logs");
   for (std::size_t i = 0; i < plan.size(); ++i) {
     const JobState state = outcomes[i].state;
     if (plan[i].job.kind == JobKind::kLibrary &&
@@ -155,13 +155,13 @@ void clean_up(const RunOptions& options, const std::vector<PlannedJob>& plan,
   }
 }
 
-int print_results(const RunOptions& options, const PlanSource& source,
-                  const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,
-                  const RunSummary& summary) {
+int print_results(const ExecutionOptions& options, const RunConfig& config,
+                  const PlanSource& source, const std::vector<PlannedJob>& plan,
+                  const std::vector<JobOutcome>& outcomes, const RunSummary& summary) {
   if (source.print) {
     source.print(plan, outcomes, summary);
   } else if (options.json) {
-    print_json(plan, outcomes, options.config.jobs.surface, summary);
+    print_json(plan, outcomes, config.jobs.surface, summary);
   } else {
     print_text(plan, outcomes, summary);
   }
@@ -169,21 +169,20 @@ int print_results(const RunOptions& options, const PlanSource& source,
   return summary.failed == 0 ? kAllDone : kSomeFailed;
 }
 
-std::optional<RunJournal> begin(const RunOptions& options, const PlanSource& source,
+std::optional<RunJournal> begin(const RunConfig& config, const PlanSource& source,
                                 const std::vector<PlannedJob>& plan, const RunSummary& summary,
                                 DigestCache& cache) {
-  io::remove_stale_partials(options.config.archive);
+  io::remove_stale_partials(config.archive);
   if (source.prepare) source.prepare(plan);
   remove_damaged_parts(plan);
   // So that a run that is killed has not hashed for nothing.
   if (source.is_archive) or_say([&] { cache.write(); });
   return std::make_optional<RunJournal>(
-      options.config.archive,
-      RunStarted{.version = SEMIGEO_VERSION,
-                 .threads = options.config.threads,
-                 .jobs = std::ssize(plan) - summary.up_to_date,
-                 .up_to_date = summary.up_to_date,
-                 .input_bytes = static_cast<std::int64_t>(total_bytes(plan))});
+      config.archive, RunStarted{.version = SEMIGEO_VERSION,
+                                 .threads = config.threads,
+                                 .jobs = std::ssize(plan) - summary.up_to_date,
+                                 .up_to_date = summary.up_to_date,
+                                 .input_bytes = static_cast<std::int64_t>(total_bytes(plan))});
 }
 
 void end(RunJournal& journal, const RunSummary& summary) {
@@ -195,9 +194,9 @@ void end(RunJournal& journal, const RunSummary& summary) {
   if (!journal.problem().empty()) std::fprintf(stderr, "semigeo: %s\n", journal.problem().c_str());
 }
 
-int run(const RunOptions& options, const PlanSource& source) {
+int run(const ExecutionOptions& options, const RunConfig& config, const PlanSource& source) {
   const auto start = std::chrono::steady_clock::now();
-  const fs::path& archive = options.config.archive;
+  const fs::path& archive = config.archive;
   const Possession possession(archive, source.is_kept);
   // What is to be verified is not taken from memory.
   DigestCache cache = options.verify ? DigestCache(archive) : DigestCache::read(archive);
@@ -206,7 +205,7 @@ int run(const RunOptions& options, const PlanSource& source) {
   summary.up_to_date = std::ranges::count_if(plan, &PlannedJob::up_to_date);
   std::optional<RunJournal> journal;
   if (possession.lock) {
-    journal = begin(options, source, plan, summary, cache);
+    journal = begin(config, source, plan, summary, cache);
   } else if (source.is_kept && summary.up_to_date < std::ssize(plan)) {
     std::rethrow_exception(possession.unwritable);
   }
@@ -215,10 +214,11 @@ int run(const RunOptions& options, const PlanSource& source) {
     std::fflush(stdout);  // it is to be read while the jobs run
   }
   std::vector<SubmittedStage> stages;
-  const auto outcomes = run_jobs_of(options, plan, journal ? &*journal : nullptr, summary, stages);
+  const auto outcomes =
+      run_jobs_of(options, config, plan, journal ? &*journal : nullptr, summary, stages);
   summary.wall_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (possession.lock) clean_up(options, plan, outcomes);
+  if (possession.lock) clean_up(options, config, plan, outcomes);
   const ProcessUsage usage = process_usage();
   summary.cpu_seconds += usage.cpu_seconds;
   summary.peak_bytes = std::max(summary.peak_bytes, usage.peak_bytes);
@@ -230,15 +230,15 @@ int run(const RunOptions& options, const PlanSource& source) {
     print_submitted(stages, options.json);
     return summary.failed == 0 ? kAllDone : kSomeFailed;
   }
-  return print_results(options, source, plan, outcomes, summary);
+  return print_results(options, config, source, plan, outcomes, summary);
 }
 
 }  // namespace
 
-int run_plan(const RunOptions& options, const PlanSource& source) {
+int run_plan(const ExecutionOptions& options, const RunConfig& config, const PlanSource& source) {
   try {
-    const bool dry = options.dry_run || !options.dag.empty();
-    return dry ? dry_run(options, source) : run(options, source);
+    const bool dry = options.dry_run || options.graph != GraphFormat::kNone;
+    return dry ? dry_run(options, config, source) : run(options, config, source);
   } catch (const LockedError& e) {
     std::fprintf(stderr, "semigeo: %s\n", e.what());
     return kLocked;

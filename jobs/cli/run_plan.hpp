@@ -4,14 +4,13 @@
 #include <vector>
 
 #include "jobs/archive/digest_cache.hpp"
-#include "jobs/cli/run_options.hpp"
+#include "jobs/cli/execution_options.hpp"
 #include "jobs/cli/run_report.hpp"
 #include "jobs/plan/plan.hpp"
 
 namespace semigeo::jobs::cli {
 
-/// Where a plan comes from. Its folder, RunOptions::config.archive, has the lock, the journal and
-/// the logs.
+/// Where a plan comes from. Its folder, RunConfig::archive, has the lock, the journal and the logs.
 struct PlanSource {
   /// Reads only. If something is to be run, it is called when the folder is ours.
   std::function<std::vector<PlannedJob>(DigestCache&)> plan;
@@ -26,6 +25,6 @@ struct PlanSource {
 };
 
 /// Makes the plan and runs it, or says what would run; prints results; returns an exit code.
-int run_plan(const RunOptions& options, const PlanSource& source);
+int run_plan(const ExecutionOptions& options, const RunConfig& config, const PlanSource& source);
 
 }  // namespace semigeo::jobs::cli

@@ -242,7 +242,8 @@ void EvolvingSurface::move() {
   std::vector<PartMeasure> parts = restore_size();
   if (options_.remesh) parts = remesh(std::move(parts));
   mean_edge_length_ = jobs::mean_edge_length(parts);
-  if (options_.schedule == Schedule::octaves) set_step(std::max(first_step_, std::sqrt(variance_)));
+  if (options_.schedule == Schedule::kOctaves)
+    set_step(std::max(first_step_, std::sqrt(variance_)));
   if (!options_.curved) angle_weighted_normals();
   prepare_faces();
 }
@@ -255,7 +256,7 @@ double EvolvingSurface::restoring_factor(const PartMeasure& was, const PartMeasu
     if (!(before > 0 && after > 0)) return 1.0;
     return std::clamp(before / after, 1 / kMaxRestoration, kMaxRestoration);
   };
-  if (options_.rescale == Rescale::edges)
+  if (options_.rescale == Rescale::kEdges)
     return ratio(was.mean_edge_length(), is.mean_edge_length());
   const double factor = ratio(was.radius_of_gyration(), is.radius_of_gyration());
   if (!(was.volume() > 0 && is.volume() > 0)) return factor;
@@ -270,7 +271,7 @@ std::vector<PartMeasure> EvolvingSurface::restore_size() {
     double factor = 1;
   };
   std::vector<PartMeasure> parts = measure_parts(mesh_, context_);
-  if (options_.rescale == Rescale::none || options_.schedule != Schedule::uniform) return parts;
+  if (options_.rescale == Rescale::kNone || options_.schedule != Schedule::kUniform) return parts;
   std::vector<Restoration> restorations(parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
     restorations[i] = {parts[i].centroid(), restoring_factor(part_reference_[i], parts[i])};

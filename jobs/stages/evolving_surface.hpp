@@ -51,22 +51,22 @@ struct LevelFields {
 
 /// How the sampling step grows from level to level.
 enum class Schedule {
-  uniform,  ///< not at all, as in the thesis
-  octaves   ///< with the scale reached: two levels double it; parts are never rescaled
+  kUniform,  ///< Not at all, as in the thesis.
+  kOctaves   ///< With the scale reached: two levels double it. Parts are never rescaled.
 };
 
 /// What each part gets back after a smoothing (5.1).
 enum class Rescale {
-  size,   ///< its radius of gyration or, if that takes less, the volume that it encloses
-  edges,  ///< its mean edge length, as in the thesis
-  none    ///< nothing
+  kSize,   ///< Its radius of gyration or, if that takes less, the volume that it encloses.
+  kEdges,  ///< Its mean edge length, as in the thesis.
+  kNone    ///< Nothing.
 };
 
 struct EvolutionOptions {
   bool curved = true;  ///< sample quadratic faces; else flat ones, as the thesis does
   kernels::Coordinates coordinates = kernels::Coordinates::semigeodesic;
-  Schedule schedule = Schedule::uniform;
-  Rescale rescale = Rescale::size;  ///< under `uniform`
+  Schedule schedule = Schedule::kUniform;
+  Rescale rescale = Rescale::kSize;  ///< Used under `kUniform` only.
   bool remesh = true;      ///< rid every level after 0 of odd triangles and lost parts (5.5)
   bool principal = false;  ///< principal curvatures as well
   double step_factor = 1;  ///< sample distance of level 0 in its mean edge lengths

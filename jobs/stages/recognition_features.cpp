@@ -21,7 +21,7 @@ using kernels::OrientedFeature;
 /// What is weaker than this comes and goes with noise and triangulation.
 constexpr float kMinScaleFree = 0.1F;  // |H| sigma, and sqrt(|K|) sigma
 
-constexpr EvolutionOptions kOctaves = {.schedule = Schedule::octaves, .rescale = Rescale::none};
+constexpr EvolutionOptions kOctaves = {.schedule = Schedule::kOctaves, .rescale = Rescale::kNone};
 
 OrientedFeature oriented(const Feature& feature, FeatureKind kind, int level, float sigma) {
   OrientedFeature result;

@@ -1,39 +1,48 @@
 #include "jobs/stages/recognition_parameters.hpp"
 
-#include <nlohmann/json.hpp>
-#include <stdexcept>
+#include "jobs/stages/parameter_json.hpp"
 
 namespace semigeo::jobs {
+namespace {
 
-std::string to_json(const RecognitionParameters& parameters) {
-  return nlohmann::json{{"least_reach", parameters.least_reach},
-                        {"levels", parameters.levels},
-                        {"most_features", parameters.most_features},
-                        {"samples", parameters.samples},
-                        {"torsion", parameters.torsion}}
-      .dump();
+/// No option sets them: the rows have keys only.
+const ParameterTable<RecognitionParameters>& table() {
+  using Recognition = RecognitionParameters;
+  using Integer = NumberIn<Recognition, int>;
+  using Number = NumberIn<Recognition, double>;
+  static const ParameterTable<Recognition> rows = {
+      {.key = "least_reach", .value = Number{field<&Recognition::least_reach>()}},
+      {.key = "levels", .value = Integer{field<&Recognition::levels>()}},
+      {.key = "most_features", .value = Integer{field<&Recognition::most_features>()}},
+      {.key = "samples", .value = Integer{field<&Recognition::samples>()}},
+      {.key = "torsion", .value = Flag<Recognition>{field<&Recognition::torsion>()}},
+  };
+  return rows;
 }
 
-RecognitionParameters recognition_parameters_from_json(const std::string& text) {
-  try {
-    const auto json = nlohmann::json::parse(text);
-    RecognitionParameters parameters;
-    json.at("least_reach").get_to(parameters.least_reach);
-    json.at("levels").get_to(parameters.levels);
-    json.at("most_features").get_to(parameters.most_features);
-    json.at("samples").get_to(parameters.samples);
-    json.at("torsion").get_to(parameters.torsion);
-    return parameters;
-  } catch (const nlohmann::json::exception& e) {
-    throw std::runtime_error(std::string("are no parameters: ") + e.what());
-  }
-}
+}  // namespace
 
 RecognitionParameters scene_parameters(const RecognitionParameters& of_models) {
   RecognitionParameters parameters = of_models;
   parameters.samples = 5 * of_models.samples;
   parameters.rim = true;
   return parameters;
+}
+
+nlohmann::json json_of(const RecognitionParameters& parameters) {
+  return json_of(table(), parameters);
+}
+
+std::string to_json(const RecognitionParameters& parameters) {
+  return json_of(parameters).dump();
+}
+
+RecognitionParameters recognition_parameters_from_json(const nlohmann::json& json) {
+  return from_json(table(), json);
+}
+
+RecognitionParameters recognition_parameters_from_json(const std::string& text) {
+  return recognition_parameters_from_json(parsed_parameters(text));
 }
 
 }  // namespace semigeo::jobs

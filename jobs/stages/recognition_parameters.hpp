@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 namespace semigeo::jobs {
@@ -19,11 +20,17 @@ struct RecognitionParameters {
 /// Returns the parameters for a scene, of which a model may be a small part.
 RecognitionParameters scene_parameters(const RecognitionParameters& of_models);
 
-/// Returns the parameters that a library depends on as JSON with sorted keys.
+/// Returns the parameters as JSON with sorted keys. A library depends on them.
+nlohmann::json json_of(const RecognitionParameters& parameters);
+
+/// Returns that JSON as text: the same parameters give the same text.
 std::string to_json(const RecognitionParameters& parameters);
 
-/// Reads what `to_json` returns. Throws std::runtime_error if a parameter is missing or is not of
+/// Reads what `json_of` returns. Throws std::runtime_error if a parameter is missing or is not of
 /// its type.
+RecognitionParameters recognition_parameters_from_json(const nlohmann::json& json);
+
+/// Reads the text that `to_json` returns, in the same way.
 RecognitionParameters recognition_parameters_from_json(const std::string& text);
 
 }  // namespace semigeo::jobs

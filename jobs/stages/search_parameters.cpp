@@ -1,27 +1,39 @@
 #include "jobs/stages/search_parameters.hpp"
 
-#include <nlohmann/json.hpp>
-#include <stdexcept>
+#include "jobs/stages/parameter_json.hpp"
 
 namespace semigeo::jobs {
 
+const ParameterTable<SearchParameters>& search_parameter_table() {
+  using Search = SearchParameters;
+  using Method = RecognitionMethod;
+  static const ParameterTable<Search> table = {
+      {.key = "method",
+       .name = "method",
+       .help = "How: surfaces are laid onto each other, or the thesis' votes and clusters,\n"
+               "which name one model, even if none is there",
+       .value = choice(field<&Search::method>(),
+                       {{"overlap", Method::kOverlap}, {"thesis", Method::kThesis}})},
+      // Its option is that of `semigeo recognise` alone, as its default depends on the method.
+      {.key = "min_score", .value = NumberIn<Search, double>{field<&Search::min_score>()}},
+  };
+  return table;
+}
+
+nlohmann::json json_of(const SearchParameters& parameters) {
+  return json_of(search_parameter_table(), parameters);
+}
+
 std::string to_json(const SearchParameters& parameters) {
-  const bool thesis = parameters.method == RecognitionMethod::kThesis;
-  return nlohmann::json{{"method", thesis ? "thesis" : "overlap"},
-                        {"min_score", parameters.min_score}}
-      .dump();
+  return json_of(parameters).dump();
+}
+
+SearchParameters search_parameters_from_json(const nlohmann::json& json) {
+  return from_json(search_parameter_table(), json);
 }
 
 SearchParameters search_parameters_from_json(const std::string& text) {
-  try {
-    const auto json = nlohmann::json::parse(text);
-    SearchParameters parameters;
-    if (json.at("method") == "thesis") parameters.method = RecognitionMethod::kThesis;
-    json.at("min_score").get_to(parameters.min_score);
-    return parameters;
-  } catch (const nlohmann::json::exception& e) {
-    throw std::runtime_error(std::string("are no parameters: ") + e.what());
-  }
+  return search_parameters_from_json(parsed_parameters(text));
 }
 
 }  // namespace semigeo::jobs

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "jobs/stages/parameter.hpp"
 #include "jobs/stages/recognise_scene.hpp"
 
 namespace semigeo::jobs {
@@ -18,11 +20,21 @@ struct SearchParameters {
   double min_score = RecognitionOptions{}.min_score;  ///< A model with less is not in the scene.
 };
 
-/// Returns the parameters as JSON with sorted keys: the same parameters give the same text.
+/// Returns what each of the parameters is called and which values it may have. A parameter is
+/// declared there and nowhere else.
+const ParameterTable<SearchParameters>& search_parameter_table();
+
+/// Returns the parameters as JSON with sorted keys.
+nlohmann::json json_of(const SearchParameters& parameters);
+
+/// Returns that JSON as text: the same parameters give the same text.
 std::string to_json(const SearchParameters& parameters);
 
-/// Reads what `to_json` returns. Throws std::runtime_error if a parameter is missing or is not of
+/// Reads what `json_of` returns. Throws std::runtime_error if a parameter is missing or is not of
 /// its type.
+SearchParameters search_parameters_from_json(const nlohmann::json& json);
+
+/// Reads the text that `to_json` returns, in the same way.
 SearchParameters search_parameters_from_json(const std::string& text);
 
 }  // namespace semigeo::jobs

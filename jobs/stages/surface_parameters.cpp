@@ -1,88 +1,166 @@
 #include "jobs/stages/surface_parameters.hpp"
 
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <stdexcept>
 
-namespace semigeo::jobs {
+#include "io/files/utf8.hpp"
+#include "jobs/stages/parameter_json.hpp"
 
+namespace semigeo::jobs {
 namespace {
 
-const char* name_of(Rescale rescale) {
-  switch (rescale) {
-    case Rescale::size:
-      return "size";
-    case Rescale::edges:
-      return "edges";
-    case Rescale::none:
-      break;
-  }
-  return "none";
+using Surface = SurfaceParameters;
+using Table = ParameterTable<Surface>;
+using Integer = NumberIn<Surface, int>;
+using BigInteger = NumberIn<Surface, std::int64_t>;
+using Number = NumberIn<Surface, double>;
+
+/// Returns what is wrong with the name of a unit, or an empty string.
+std::string unit_problem(const std::string& unit) {
+  constexpr const char* kRemedy = "give a short name such as mm or inch";
+  if (!io::is_utf8(unit)) return std::string("is not UTF-8; ") + kRemedy;
+  const bool plain =
+      !unit.empty() && unit.size() <= 32 && unit.find_first_of("\"\\\n\r\t") == std::string::npos;
+  return plain ? std::string() : kRemedy;
+}
+
+/// What is done to a scan before it is smoothed.
+Table preparation_rows() {
+  using Options = PreparationOptions;
+  constexpr auto kGroup = &Surface::preparation;
+  return {
+      {.key = "fill_holes",
+       .name = "fill-holes",
+       .help = "Fill holes of at most so many edges; outer boundaries stay. 0: none",
+       .value = BigInteger{field<kGroup, &Options::fill_holes>(), 0, 1000000}},
+      {.key = "decimate",
+       .name = "decimate",
+       .help = "Remove vertices that lie this close to their surroundings: in mean edge\n"
+               "lengths (0.1), or in the unit that --unit names (0.05mm)",
+       .value = Tolerance<Surface>{field<kGroup, &Options::decimate>(),
+                                   field<kGroup, &Options::decimate_in_length_units>()}},
+      {.key = "target_vertices",
+       .name = "target-vertices",
+       .help = "Remove vertices, nearest to their surroundings first, until so many are left.\n"
+               "0: no limit",
+       .value = BigInteger{field<kGroup, &Options::target_vertices>(), 0, std::int64_t{1} << 31}},
+  };
+}
+
+/// Levels, patches and steps.
+Table evolution_rows() {
+  using Options = EvolutionOptions;
+  using kernels::Coordinates;
+  constexpr auto kGroup = &Surface::evolution;
+  return {
+      {.key = "levels",
+       .name = "levels",
+       .help = "Smoothing iterations; every level is stored",
+       .value = Integer{field<&Surface::levels>(), 0, 999}},
+      {.key = "surface",
+       .name = "surface",
+       .help = "What patches sample: quadratic faces, or flat ones as in the thesis",
+       .value = choice(field<kGroup, &Options::curved>(), {{"curved", true}, {"flat", false}})},
+      {.key = "coordinates",
+       .name = "coordinates",
+       .help = "How patches are laid: a base line and its perpendiculars, or rays",
+       .value =
+           choice(field<kGroup, &Options::coordinates>(),
+                  {{"semigeodesic", Coordinates::semigeodesic}, {"polar", Coordinates::polar}})},
+      {.key = "schedule",
+       .name = "schedule",
+       .help = "Sample distance from level to level: the same, as in the thesis, or growing\n"
+               "with the scale reached, so that two levels double it",
+       .value = choice(field<kGroup, &Options::schedule>(),
+                       {{"uniform", Schedule::kUniform}, {"octaves", Schedule::kOctaves}})},
+      {.key = "rescale",
+       .name = "rescale",
+       .help =
+           "What each part gets back after a uniform smoothing: its size (radius of gyration),\n"
+           "its mean edge length, as in the thesis, or nothing. Noise makes edges longer: noisy\n"
+           "scans swell by the second",
+       .value = choice(
+           field<kGroup, &Options::rescale>(),
+           {{"size", Rescale::kSize}, {"edges", Rescale::kEdges}, {"none", Rescale::kNone}})},
+      {.key = "remesh",
+       .name = "no-remesh",
+       .help = "Keep the connectivity of level 0: no odd triangles removed, no necks torn,\n"
+               "no small parts dropped",
+       .value = Flag<Surface>{field<kGroup, &Options::remesh>(), false}},
+      {.key = "principal",
+       .name = "principal",
+       .help = "Store principal curvatures and their directions as well",
+       .value = Flag<Surface>{field<kGroup, &Options::principal>()}},
+      {.key = "step",
+       .name = "step",
+       .help = "Sample distance of patches at level 0, in mean edge lengths",
+       .value = Number{field<kGroup, &Options::step_factor>(), 0.05, 20}},
+  };
+}
+
+/// Maxima, and the level that counts.
+Table feature_rows() {
+  using Options = FeatureOptions;
+  constexpr auto kGroup = &Surface::features;
+  return {
+      {.key = "feature_radius",
+       .name = "feature-radius",
+       .help = "Maxima of curvature outdo all of their sign within so many scales of the level.\n"
+               "0: only the ring of neighbours, as in the thesis",
+       .value = Number{field<kGroup, &Options::radius>(), 0, 20}},
+      {.key = "feature_completeness",
+       .name = "feature-completeness",
+       .help = "Vertices with less of their patch are no features: 1 is all of it",
+       .value = Number{field<kGroup, &Options::min_completeness>(), 0, 1}},
+      {.key = "level",
+       .name = "level",
+       .help = "The level for recognition; else that at which the number of features changes\n"
+               "least",
+       .value = OptionalNumber<Surface>{field<&Surface::recognition_level>(), 0, 999, "slope"}},
+  };
+}
+
+/// How datasets are stored and labelled.
+Table storage_rows() {
+  using io::Compression;
+  return {
+      {.key = "compression",
+       .name = "compression",
+       .help = "Of the stored arrays",
+       .value = choice(field<&Surface::compression>(),
+                       {{"deflate", Compression::deflate}, {"none", Compression::none}})},
+      {.key = "length_unit",
+       .name = "unit",
+       .help = "Length unit of the scans, as a label",
+       .value = Text<Surface>{field<&Surface::length_unit>(), unit_problem}},
+  };
 }
 
 }  // namespace
 
+const ParameterTable<SurfaceParameters>& surface_parameter_table() {
+  static const Table table =
+      joined({preparation_rows(), evolution_rows(), feature_rows(), storage_rows()});
+  return table;
+}
+
+nlohmann::json json_of(const SurfaceParameters& parameters) {
+  return json_of(surface_parameter_table(), parameters);
+}
+
 std::string to_json(const SurfaceParameters& parameters) {
-  const PreparationOptions& preparation = parameters.preparation;
-  const auto tolerance = nlohmann::json(preparation.decimate).dump() +
-                         (preparation.decimate_in_length_units ? " length units" : " edges");
-  const EvolutionOptions& evolution = parameters.evolution;
-  const bool polar = evolution.coordinates == kernels::Coordinates::polar;
-  // nlohmann's object is an ordered map: keys come out sorted.
-  return nlohmann::json{
-      {"compression", parameters.compression == io::Compression::deflate ? "deflate" : "none"},
-      {"decimate", tolerance},
-      {"feature_completeness", parameters.features.min_completeness},
-      {"feature_radius", parameters.features.radius},
-      {"fill_holes", preparation.fill_holes},
-      {"target_vertices", preparation.target_vertices},
-      {"coordinates", polar ? "polar" : "semigeodesic"},
-      {"length_unit", parameters.length_unit},
-      {"level", parameters.recognition_level ? nlohmann::json(*parameters.recognition_level)
-                                             : nlohmann::json("slope")},
-      {"levels", parameters.levels},
-      {"principal", evolution.principal},
-      {"remesh", evolution.remesh},
-      {"rescale", name_of(evolution.rescale)},
-      {"schedule", evolution.schedule == Schedule::octaves ? "octaves" : "uniform"},
-      {"step", evolution.step_factor},
-      {"surface", evolution.curved ? "curved" : "flat"}}
-      .dump();
+  return json_of(parameters).dump();
+}
+
+SurfaceParameters surface_parameters_from_json(const nlohmann::json& json) {
+  const SurfaceParameters parameters = from_json(surface_parameter_table(), json);
+  if (json_of(parameters).dump() != json.dump())
+    throw std::runtime_error("are no parameters of this version: " + json.dump());
+  return parameters;
 }
 
 SurfaceParameters surface_parameters_from_json(const std::string& text) {
-  try {
-    const auto json = nlohmann::json::parse(text);
-    const auto is = [&](const char* key, const char* word) { return json.at(key) == word; };
-    SurfaceParameters parameters;
-    PreparationOptions& preparation = parameters.preparation;
-    std::istringstream tolerance(json.at("decimate").get<std::string>());
-    std::string unit;
-    tolerance >> preparation.decimate >> unit;
-    preparation.decimate_in_length_units = unit == "length";
-    json.at("fill_holes").get_to(preparation.fill_holes);
-    json.at("target_vertices").get_to(preparation.target_vertices);
-    EvolutionOptions& evolution = parameters.evolution;
-    evolution.curved = is("surface", "curved");
-    if (is("coordinates", "polar")) evolution.coordinates = kernels::Coordinates::polar;
-    if (is("schedule", "octaves")) evolution.schedule = Schedule::octaves;
-    for (const Rescale rescale : {Rescale::size, Rescale::edges, Rescale::none})
-      if (is("rescale", name_of(rescale))) evolution.rescale = rescale;
-    json.at("remesh").get_to(evolution.remesh);
-    json.at("principal").get_to(evolution.principal);
-    json.at("step").get_to(evolution.step_factor);
-    json.at("feature_completeness").get_to(parameters.features.min_completeness);
-    json.at("feature_radius").get_to(parameters.features.radius);
-    json.at("levels").get_to(parameters.levels);
-    if (!is("level", "slope")) parameters.recognition_level = json.at("level").get<int>();
-    json.at("length_unit").get_to(parameters.length_unit);
-    if (is("compression", "none")) parameters.compression = io::Compression::none;
-    if (to_json(parameters) != json.dump())
-      throw std::runtime_error("are no parameters of this version: " + text);
-    return parameters;
-  } catch (const nlohmann::json::exception& e) {
-    throw std::runtime_error(std::string("are no parameters: ") + e.what());
-  }
+  return surface_parameters_from_json(parsed_parameters(text));
 }
 
 }  // namespace semigeo::jobs

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
 #include "io/files/chunk_codec.hpp"
 #include "jobs/stages/evolving_surface.hpp"
 #include "jobs/stages/level_features.hpp"
+#include "jobs/stages/parameter.hpp"
 #include "jobs/stages/prepare_surface.hpp"
 
 namespace semigeo::jobs {
@@ -22,10 +24,20 @@ struct SurfaceParameters {
   std::string length_unit = "unknown";  ///< Label of the scan's length unit, as UTF-8.
 };
 
-/// Returns the parameters as JSON with sorted keys: the same parameters give the same text.
+/// Returns what each of the parameters is called and which values it may have, in the order of the
+/// help text. A parameter is declared there and nowhere else.
+const ParameterTable<SurfaceParameters>& surface_parameter_table();
+
+/// Returns the parameters as JSON with sorted keys.
+nlohmann::json json_of(const SurfaceParameters& parameters);
+
+/// Returns that JSON as text: the same parameters give the same text.
 std::string to_json(const SurfaceParameters& parameters);
 
-/// Reads what `to_json` returns. Throws std::runtime_error on every other text.
+/// Reads what `json_of` returns. Throws std::runtime_error on every other value.
+SurfaceParameters surface_parameters_from_json(const nlohmann::json& json);
+
+/// Reads the text that `to_json` returns, in the same way.
 SurfaceParameters surface_parameters_from_json(const std::string& text);
 
 }  // namespace semigeo::jobs

@@ -144,7 +144,7 @@ TEST(EvolutionTheoremsTest, StaysInItsConvexHull_Theorem2) {
   for (const bool curved : {false, true})
     for (const TriangleMesh& mesh : {rough_torus(), shapes::dumbbell(), shapes::cube(2, 8)}) {
       const EvolvedMesh evolved =
-          evolve_mesh(mesh, 15, {.curved = curved, .rescale = Rescale::none});
+          evolve_mesh(mesh, 15, {.curved = curved, .rescale = Rescale::kNone});
       const std::vector<LevelShape> levels = level_shapes(evolved);
       for (std::size_t k = 1; k < levels.size(); ++k) {
         // What is left within a step is no surface to its patches; in the end it is replaced.
@@ -187,7 +187,7 @@ TEST(EvolutionTheoremsTest, DisplacementTendsToMeanCurvatureFlow) {
     if (surface.open()) continue;
     for (const auto tessellation : {shapes::Tessellation::even, shapes::Tessellation::uneven}) {
       SCOPED_TRACE(surface.name + ", " + name_of(tessellation));
-      const EvolutionOptions options{.rescale = Rescale::none, .remesh = false};
+      const EvolutionOptions options{.rescale = Rescale::kNone, .remesh = false};
       const FlowError coarse = flow_error(tessellate(surface, tessellation, 642), options);
       const FlowError fine = flow_error(tessellate(surface, tessellation, 10242), options);
       const double finer = std::log(coarse.edge / fine.edge);
@@ -208,7 +208,7 @@ TEST(EvolutionTheoremsTest, OnFlatFacesDisplacementTendsToTheFlowOverLongerSteps
   double errors[3];
   for (int i = 0; i < 3; ++i)
     errors[i] = flow_error(mesh, {.curved = false,
-                                  .rescale = Rescale::none,
+                                  .rescale = Rescale::kNone,
                                   .remesh = false,
                                   .step_factor = std::exp2(i)})
                     .median;
@@ -219,7 +219,7 @@ TEST(EvolutionTheoremsTest, OnFlatFacesDisplacementTendsToTheFlowOverLongerSteps
 
 // r^2 = r0^2 - 2 variance per level.
 TEST(EvolutionTheoremsTest, ASphereShrinksByMeanCurvatureFlow) {
-  const EvolvedMesh evolved = evolve_mesh(shapes::icosphere(4), 60, {.rescale = Rescale::none});
+  const EvolvedMesh evolved = evolve_mesh(shapes::icosphere(4), 60, {.rescale = Rescale::kNone});
   const double step = evolved.levels[0].step;
   const double variance = kernels::gaussian_filters().variance * step * step;
   for (std::size_t k = 0; k < evolved.levels.size(); ++k) {

@@ -111,9 +111,9 @@ TEST(EvolvingSurfaceTest, ASphereStaysASphere) {
 // Level 1 is the smoothed surface, enlarged about its centroid to the first mean edge length (5.1).
 TEST(EvolvingSurfaceTest, RestoringEdgesEnlargesAboutTheCentroid) {
   const EvolvedMesh plain =
-      evolve_mesh(rough_torus(), 1, {.rescale = Rescale::none, .remesh = false});
+      evolve_mesh(rough_torus(), 1, {.rescale = Rescale::kNone, .remesh = false});
   const EvolvedMesh restored =
-      evolve_mesh(rough_torus(), 1, {.rescale = Rescale::edges, .remesh = false});
+      evolve_mesh(rough_torus(), 1, {.rescale = Rescale::kEdges, .remesh = false});
   double area = 0;
   Vector3d centre = Vector3d::Zero();
   for (const auto& t : plain.surface.triangles) {
@@ -140,10 +140,10 @@ TEST(EvolvingSurfaceTest, ANoisySphereKeepsItsSizeUnlessItsEdgesAreRestored) {
     for (const Vector3f& p : evolved.levels[4].points) mean += p.norm();
     return mean / static_cast<double>(evolved.levels[4].points.size());
   };
-  const EvolvedMesh plain = evolve_mesh(mesh, 4, {.rescale = Rescale::none});
+  const EvolvedMesh plain = evolve_mesh(mesh, 4, {.rescale = Rescale::kNone});
   const double step = plain.levels[0].step;
   EXPECT_NEAR(radius(plain), std::sqrt(1 - 2 * 4 * step * step), 2e-3);
-  EXPECT_GT(radius(evolve_mesh(mesh, 4, {.rescale = Rescale::edges})), 1.03);
+  EXPECT_GT(radius(evolve_mesh(mesh, 4, {.rescale = Rescale::kEdges})), 1.03);
   EXPECT_NEAR(radius(evolve_mesh(mesh, 4)), 1, 1e-3);
 }
 
@@ -182,7 +182,7 @@ TEST(EvolvingSurfaceTest, ScaleIsTheSmoothingSoFarAndTheStep) {
   const double variance_of_a_pass = kernels::gaussian_filters().variance;
   for (const double factor : {0.5, 1.0, 2.0}) {
     const EvolvedMesh evolved = evolve_mesh(
-        rough_torus(), 12, {.rescale = Rescale::edges, .remesh = false, .step_factor = factor});
+        rough_torus(), 12, {.rescale = Rescale::kEdges, .remesh = false, .step_factor = factor});
     double variance = 0, previous = 0;
     for (const LevelFields& level : evolved.levels) {
       EXPECT_NEAR(level.step, factor * evolved.levels[0].mean_edge_length, 1e-12);
@@ -198,7 +198,8 @@ TEST(EvolvingSurfaceTest, ScaleIsTheSmoothingSoFarAndTheStep) {
 
 // Steps grow with the scale already reached, two levels double it, and nothing is rescaled.
 TEST(EvolvingSurfaceTest, OctavesDoubleTheScaleInTwoLevels) {
-  const EvolvedMesh evolved = evolve_mesh(shapes::icosphere(5), 5, {.schedule = Schedule::octaves});
+  const EvolvedMesh evolved =
+      evolve_mesh(shapes::icosphere(5), 5, {.schedule = Schedule::kOctaves});
   const double h = evolved.levels[0].mean_edge_length;
   const double steps[] = {1, 1, std::sqrt(2), 2, std::sqrt(8), 4};
   double radius = 1;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <stdexcept>
+#include <string>
 
 namespace semigeo::jobs {
 namespace {
@@ -16,7 +17,7 @@ TEST(RecognitionParametersTest, AreReadBack) {
   EXPECT_EQ(read.torsion, unusual.torsion);
   EXPECT_EQ(read.samples, unusual.samples);
   EXPECT_EQ(read.least_reach, unusual.least_reach);
-  for (const char* text : {"", "{}", "[]", R"({"levels":3})"})
+  for (const std::string text : {"", "{}", "[]", R"({"levels":3})"})
     EXPECT_THROW(recognition_parameters_from_json(text), std::runtime_error) << text;
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <stdexcept>
+#include <string>
 
 namespace semigeo::jobs {
 namespace {
@@ -14,7 +15,7 @@ TEST(SearchParametersTest, AreReadBack) {
     EXPECT_EQ(to_json(search_parameters_from_json(to_json(parameters))), to_json(parameters));
   EXPECT_NE(to_json(SearchParameters{.method = RecognitionMethod::kThesis}),
             to_json(SearchParameters{}));
-  for (const char* text : {"", "{}", "[]", R"({"method":"thesis"})"})
+  for (const std::string text : {"", "{}", "[]", R"({"method":"thesis"})"})
     EXPECT_THROW(search_parameters_from_json(text), std::runtime_error) << text;
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
+#include <string>
 
 #include "tests/jobs/stages/unusual_parameters.hpp"
 
@@ -28,7 +29,7 @@ TEST(SurfaceParametersTest, AreJsonWithSortedKeys) {
       R"("remesh":false,"rescale":"edges","schedule":"octaves","step":0.1,"surface":"flat","target_vertices":1993})");
   for (const SurfaceParameters& parameters : {SurfaceParameters{}, other})
     EXPECT_EQ(to_json(surface_parameters_from_json(to_json(parameters))), to_json(parameters));
-  for (const char* text : {"", "{}", "[]", R"({"levels":8})"})
+  for (const std::string text : {"", "{}", "[]", R"({"levels":8})"})
     EXPECT_THROW(surface_parameters_from_json(text), std::runtime_error) << text;
 }
 
@@ -43,15 +44,27 @@ TEST(SurfaceParametersTest, EachOfThemShows) {
     if (field == 3) changed.compression = io::Compression::none;
     if (field == 4) changed.length_unit = "mm";
     if (field == 5) changed.evolution.coordinates = kernels::Coordinates::polar;
-    if (field == 6) changed.evolution.schedule = Schedule::octaves;
+    if (field == 6) changed.evolution.schedule = Schedule::kOctaves;
     if (field >= 8) changed.preparation.decimate = 1;
     if (field == 9) changed.preparation.decimate_in_length_units = true;
     if (field == 10) changed.preparation.fill_holes = 3;
-    if (field == 12) changed.evolution.rescale = Rescale::none;
+    if (field == 12) changed.evolution.rescale = Rescale::kNone;
     if (field == 11) changed.preparation.target_vertices = 100;
     if (field == 7) changed.evolution.principal = true;
     EXPECT_TRUE(texts.insert(to_json(changed)).second) << "field " << field;
     EXPECT_TRUE(nlohmann::json::accept(to_json(changed)));
+  }
+}
+
+TEST(SurfaceParametersTest, HaveKeysNamesAndHelpOfTheirOwn) {
+  std::set<std::string> keys;
+  std::set<std::string> names;
+  for (const Parameter<SurfaceParameters>& row : surface_parameter_table()) {
+    EXPECT_TRUE(keys.insert(row.key).second) << row.key;
+    EXPECT_TRUE(names.insert(row.name).second) << row.name;
+    EXPECT_STRNE(row.key, "");
+    EXPECT_STRNE(row.name, "");
+    EXPECT_STRNE(row.help, "") << row.name;
   }
 }
 

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "jobs/run/local_executor.hpp"
+#include "jobs/slurm/slurm_executor.hpp"
+#include "jobs/stages/parameter.hpp"
+
+namespace semigeo::jobs::cli {
+
+/// Where jobs run.
+enum class ExecutorKind {
+  kLocal,  ///< On this machine.
+  kSlurm   ///< In an array job of Slurm.
+};
+
+/// How the graph of files and jobs is printed.
+enum class GraphFormat { kNone, kDot, kJson };
+
+/// How jobs are run and what is printed: the same for jobs of every kind. No byte of an output
+/// depends on it.
+struct ExecutionOptions {
+  ExecutorKind executor = ExecutorKind::kLocal;
+  ExecutorOptions limits;
+  SlurmOptions slurm;
+  bool keep_going = false;  ///< --keep-going was given; it is the default.
+  std::string until;        ///< Time of day, such as "06:00"; empty if no end was given.
+  bool json = false;        ///< Results are printed as JSON.
+  bool verify = false;      ///< What counts as up to date is read completely.
+  bool dry_run = false;     ///< Nothing is run.
+  bool explain = false;     ///< Every reason for a job is printed.
+  GraphFormat graph = GraphFormat::kNone;  ///< The graph is printed, and nothing is run.
+};
+
+/// Returns what each of the options is called and which values it may have, in the order of the
+/// help text. An option is declared there and nowhere else.
+const ParameterTable<ExecutionOptions>& execution_option_table();
+
+/// Adds the options of execution_option_table() to a command. They are bound to `options`, which
+/// must live until the command line is parsed.
+void add_execution_options(CLI::App& command, ExecutionOptions& options);
+
+/// Completes the options when the command line is parsed: a time of day becomes a number of
+/// seconds. Throws CLI::ValidationError if some of them do not go together.
+void settle(ExecutionOptions& options);
+
+}  // namespace semigeo::jobs::cli
