@@ -43,11 +43,11 @@ double seconds_of(const timeval& time) {
 }
 
 Descriptor open_log(const Command& command) {
-  if (command.log.empty()) return Descriptor(open("/dev/null", O_WRONLY | O_CLOEXEC));
+  if (command.log.empty()) return open_file("/dev/null", O_WRONLY);
   if (command.log.has_parent_path()) std::filesystem::create_directories(command.log.parent_path());
   // Appending even to an empty file, so that nothing is overwritten whoever else writes to it.
-  const int flags = O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC;
-  Descriptor log(open(command.log.c_str(), command.append_to_log ? flags : flags | O_TRUNC, 0666));
+  const int flags = O_WRONLY | O_CREAT | O_APPEND;
+  Descriptor log = open_file(command.log, command.append_to_log ? flags : flags | O_TRUNC);
   if (!log) fail("cannot open " + command.log.string());
   return log;
 }
@@ -118,7 +118,7 @@ ChildProcesses::Id ChildProcesses::start(const Command& command) {
     child->channel = Descriptor(ends[0]);
     input = Descriptor(ends[1]);
   } else {
-    input = Descriptor(open("/dev/null", O_RDONLY | O_CLOEXEC));
+    input = open_file("/dev/null", O_RDONLY);
   }
   if (!input || !output) fail("cannot open /dev/null");
 

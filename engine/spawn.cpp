@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <system_error>
+#include <utility>
 
 namespace semigeo::engine {
 namespace {
@@ -48,11 +49,10 @@ class Launch {
     const int sources[] = {program.input, program.output, program.output, program.answers};
     for (int target = 0; target < kFirstUnused; ++target)
       if (sources[target] >= 0) sources_[target] = moved_up(program, sources[target]);
-    int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) fail(program, errno);
-    failure_ = Descriptor(ends[0]);
-    const Descriptor low(ends[1]);
-    report_ = moved_up(program, low.get());
+    Pipe pipe = make_pipe();
+    if (!pipe.from) fail(program, errno);
+    failure_ = std::move(pipe.from);
+    report_ = moved_up(program, pipe.to.get());
 
     getrlimit(RLIMIT_AS, &address_space_);
     if (program.address_space_bytes > 0) {

@@ -12,9 +12,9 @@
 #include <system_error>
 #include <utility>
 
+#include "engine/descriptor.hpp"
 #include "io/files/chunk_codec.hpp"
 #include "io/files/error.hpp"
-#include "io/files/file_descriptor.hpp"
 
 namespace semigeo::io {
 namespace {
@@ -45,7 +45,7 @@ std::string temporary_name(std::string name) {
 
 void sync_path(const std::filesystem::path& path, const std::filesystem::path& shown_as,
                int flags) {
-  const FileDescriptor descriptor(path, O_RDONLY | flags);
+  const engine::Descriptor descriptor = engine::open_file(path, O_RDONLY | flags);
   if (!descriptor) fail(shown_as, "cannot open it to force it to the disk", errno);
   // Some network file systems know no fsync of a folder and say so with EINVAL.
   if (fsync(descriptor.get()) != 0 && errno != EINVAL)
@@ -121,7 +121,8 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
                            Folder folder) {
   AtomicFile file(path);
   {
-    FileDescriptor descriptor(file.temporary_path(), O_WRONLY | O_CREAT | O_TRUNC);
+    engine::Descriptor descriptor =
+        engine::open_file(file.temporary_path(), O_WRONLY | O_CREAT | O_TRUNC);
     if (!descriptor) fail(path, "cannot create it", errno);
     while (!content.empty()) {
       const ssize_t written = ::write(descriptor.get(), content.data(), content.size());

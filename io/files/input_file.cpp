@@ -30,28 +30,23 @@ Error open_error(const std::filesystem::path& path, int code) {
 
 InputFile::InputFile(std::filesystem::path path) : path_(std::move(path)) {
   // O_NONBLOCK: opening a pipe must not wait for a writer; it has no effect on regular files.
-  descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor_ < 0) throw open_error(path_, errno);
+  descriptor_ = engine::open_file(path_, O_RDONLY | O_NONBLOCK);
+  if (!descriptor_) throw open_error(path_, errno);
   struct stat status {};
-  const bool known = ::fstat(descriptor_, &status) == 0;
+  const bool known = ::fstat(descriptor_.get(), &status) == 0;
   if (known && S_ISREG(status.st_mode)) {
     size_ = status.st_size;
     return;
   }
-  ::close(descriptor_);
   if (known && S_ISDIR(status.st_mode))
     throw Error(path_, "", "is a folder, not a file", "name a file in it");
   throw Error(path_, "", "is not a regular file", "copy its contents into a file first");
 }
 
-InputFile::~InputFile() {
-  ::close(descriptor_);
-}
-
 std::size_t InputFile::read(std::span<char> bytes) {
   std::size_t done = 0;
   while (done < bytes.size()) {
-    const ssize_t got = ::read(descriptor_, bytes.data() + done, bytes.size() - done);
+    const ssize_t got = ::read(descriptor_.get(), bytes.data() + done, bytes.size() - done);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail(static_cast<std::uint64_t>(position_));
     if (got == 0) break;
@@ -64,7 +59,7 @@ std::size_t InputFile::read(std::span<char> bytes) {
 std::size_t InputFile::read_at(std::uint64_t offset, std::span<char> bytes) const {
   std::size_t done = 0;
   while (done < bytes.size()) {
-    const ssize_t got = ::pread(descriptor_, bytes.data() + done, bytes.size() - done,
+    const ssize_t got = ::pread(descriptor_.get(), bytes.data() + done, bytes.size() - done,
                                 static_cast<off_t>(offset + done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail(offset + done);

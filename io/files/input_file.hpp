@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <span>
 
+#include "engine/descriptor.hpp"
+
 namespace semigeo::io {
 
 /// A regular file opened for reading, from front to back or anywhere. Missing files, folders,
@@ -12,9 +14,6 @@ namespace semigeo::io {
 class InputFile {
  public:
   explicit InputFile(std::filesystem::path path);
-  ~InputFile();
-  InputFile(const InputFile&) = delete;
-  InputFile& operator=(const InputFile&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
   /// Bytes in the file when it was opened.
@@ -30,7 +29,7 @@ class InputFile {
   [[noreturn]] void fail(std::uint64_t offset) const;
 
   std::filesystem::path path_;
-  int descriptor_ = -1;
+  engine::Descriptor descriptor_;
   std::int64_t size_ = 0;
   std::int64_t position_ = 0;
 };

@@ -11,8 +11,8 @@
 #include <optional>
 #include <system_error>
 
+#include "engine/descriptor.hpp"
 #include "io/files/atomic_file.hpp"
-#include "io/files/file_descriptor.hpp"
 #include "jobs/archive/utc_time.hpp"
 
 namespace semigeo::jobs {
@@ -50,7 +50,7 @@ std::optional<Owner> owner_in(const std::string& text) {
 }
 
 /// Of a lock that is open; empty if it cannot be read.
-std::string content_of(const io::FileDescriptor& lock) {
+std::string content_of(const engine::Descriptor& lock) {
   std::array<char, 4096> buffer;
   const ssize_t count = pread(lock.get(), buffer.data(), buffer.size(), 0);
   return count > 0 ? std::string(buffer.data(), static_cast<std::size_t>(count)) : std::string();
@@ -90,7 +90,7 @@ bool place(const fs::path& from, const fs::path& to) {
 
 /// Waits for the right to replace this very file, which lasts until it is closed. False if the file
 /// system knows no such right.
-bool guard(const io::FileDescriptor& lock) {
+bool guard(const engine::Descriptor& lock) {
   struct flock whole {};
   whole.l_type = F_WRLCK;
   whole.l_whence = SEEK_SET;
@@ -99,7 +99,7 @@ bool guard(const io::FileDescriptor& lock) {
   return true;
 }
 
-bool is_at(const io::FileDescriptor& lock, const fs::path& file) {
+bool is_at(const engine::Descriptor& lock, const fs::path& file) {
   struct stat opened {};
   struct stat named {};
   return fstat(lock.get(), &opened) == 0 && stat(file.c_str(), &named) == 0 &&
@@ -109,7 +109,7 @@ bool is_at(const io::FileDescriptor& lock, const fs::path& file) {
 /// Puts `ours` in the place of a dead owner's lock; LockedError if the owner is not dead. False if
 /// meanwhile the lock was freed or taken: then all begins again.
 bool take_over(const fs::path& ours, const fs::path& file) {
-  const io::FileDescriptor lock(file, O_RDWR);
+  const engine::Descriptor lock = engine::open_file(file, O_RDWR);
   if (!lock && errno == ENOENT) return false;
   if (!lock) fail(file, errno);
   const bool guarded = guard(lock);
@@ -129,7 +129,8 @@ ArchiveLock::ArchiveLock(const fs::path& archive)
     : file_(archive / kFileName), owner_(this_process()) {
   io::AtomicFile ours(file_);  // for its name, and to be removed whatever comes
   {
-    const io::FileDescriptor text(ours.temporary_path(), O_WRONLY | O_CREAT | O_EXCL);
+    const engine::Descriptor text =
+        engine::open_file(ours.temporary_path(), O_WRONLY | O_CREAT | O_EXCL);
     if (!text) fail(file_, errno);
     const std::string content = text_of({owner_, utc_time()});
     if (write(text.get(), content.data(), content.size()) != static_cast<ssize_t>(content.size()))
@@ -143,13 +144,13 @@ ArchiveLock::ArchiveLock(const fs::path& archive)
 ArchiveLock::~ArchiveLock() {
   if (owner_.pid != getpid()) return;
   // Nobody replaces the lock of the living; one that was removed by hand may be another's by now.
-  const io::FileDescriptor lock(file_, O_RDONLY);
+  const engine::Descriptor lock = engine::open_file(file_, O_RDONLY);
   const auto owner = lock ? owner_in(content_of(lock)) : std::nullopt;
   if (owner && owner->process == owner_) unlink(file_.c_str());
 }
 
 std::optional<LockOwner> lock_owner(const fs::path& archive) {
-  const io::FileDescriptor lock(archive / kFileName, O_RDONLY);
+  const engine::Descriptor lock = engine::open_file(archive / kFileName, O_RDONLY);
   if (!lock) return std::nullopt;
   const auto owner = owner_in(content_of(lock));
   return owner && life_of(owner->process) != Life::kDead ? owner : std::nullopt;

@@ -148,7 +148,7 @@ bool read_line(std::string_view line, const std::function<void(const JournalEntr
                   "check its permissions and the free space");
 }
 
-bool lacks_end(const io::FileDescriptor& file) {
+bool lacks_end(const engine::Descriptor& file) {
   const off_t size = lseek(file.get(), 0, SEEK_END);
   char last = '\n';
   return size > 0 && pread(file.get(), &last, 1, size - 1) == 1 && last != '\n';
@@ -159,7 +159,7 @@ bool lacks_end(const io::FileDescriptor& file) {
 Journal::Journal(const fs::path& archive, std::string run)
     : path_(archive / kFileName),
       run_(std::move(run)),
-      file_(path_, O_RDWR | O_APPEND | O_CREAT),
+      file_(engine::open_file(path_, O_RDWR | O_APPEND | O_CREAT)),
       torn_(file_ && lacks_end(file_)) {
   if (!file_) fail(path_, "cannot be opened: ", errno);
 }

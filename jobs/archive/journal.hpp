@@ -6,7 +6,7 @@
 #include <string>
 #include <variant>
 
-#include "io/files/file_descriptor.hpp"
+#include "engine/descriptor.hpp"
 
 namespace semigeo::jobs {
 
@@ -77,7 +77,7 @@ class Journal {
  private:
   std::filesystem::path path_;
   std::string run_;
-  io::FileDescriptor file_;
+  engine::Descriptor file_;
   bool torn_ = false;  ///< the last line has no end
 };
 
