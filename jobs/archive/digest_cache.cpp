@@ -3,15 +3,14 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <atomic>
 #include <charconv>
 #include <ctime>
 #include <fstream>
 #include <iterator>
 #include <string_view>
-#include <thread>
 #include <utility>
 
+#include "engine/parallel.hpp"
 #include "io/dataset/dataset.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/files/error.hpp"
@@ -155,20 +154,12 @@ std::vector<ScanDigest> DigestCache::scan_digests(const std::vector<FoundScan>& 
     reading.keys = {.job_key = std::string(kNoJob), .input_xxh3 = digests[i].xxh3};
     reading.after = stamp_of(scans[i].file);
   };
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < scans.size(); i = next++) {
-      digests[i].error = scans[i].error;
-      if (scans[i].error.empty()) digest(i);
-    }
-  };
-  {
-    const std::size_t most =
-        threads > 0 ? static_cast<std::size_t>(threads) : std::thread::hardware_concurrency();
-    std::vector<std::jthread> helpers;
-    for (std::size_t i = 1; i < std::min(most, scans.size()); ++i) helpers.emplace_back(work);
-    work();
-  }
+  const auto count = static_cast<std::int64_t>(scans.size());
+  engine::Workers(threads).for_blocks(count, 1, [&](engine::IndexRange range) {
+    const auto i = static_cast<std::size_t>(range.begin);
+    digests[i].error = scans[i].error;
+    if (scans[i].error.empty()) digest(i);
+  });
   for (std::size_t i = 0; i < scans.size(); ++i) {
     const std::string& path = scans[i].file.native();
     if (find(path, readings[i].before) != nullptr) {

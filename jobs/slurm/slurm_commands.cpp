@@ -1,32 +1,27 @@
 #include "jobs/slurm/slurm_commands.hpp"
 
-#include <fcntl.h>
-#include <poll.h>
-#include <signal.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <sstream>
 #include <system_error>
 
-#include "engine/spawn.hpp"
+#include "engine/run_command.hpp"
 #include "io/files/error.hpp"
 
 namespace semigeo::jobs {
 namespace {
 
 namespace fs = std::filesystem;
-using engine::Descriptor;
-using Clock = std::chrono::steady_clock;
 
 /// Slurm's own programs give up on a controller that does not answer before this.
-constexpr std::chrono::seconds kMostTime{120};
+constexpr int kMostSeconds = 120;
+/// More than the queue of a million tasks.
+constexpr std::size_t kMostBytes = std::size_t{1} << 28;
+constexpr std::size_t kMostShownBytes = 1000;
 constexpr const char* kRemedy =
     "check that the cluster is up and what --slurm-option asks for, or run with --executor local";
 
@@ -42,52 +37,14 @@ std::string in_path(const std::string& program) {
                   "run where Slurm's programs are, or with --executor local");
 }
 
-/// What the program printed on standard output and error.
-struct Answer {
-  std::string text;
-  int exit_code = 0;  ///< -1 if a signal ended it
-};
-
-/// All that comes until the other end closes; nothing more after kMostTime.
-bool read_all(int descriptor, std::string& text) {
-  const auto until = Clock::now() + kMostTime;
-  for (;;) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
-    pollfd waiting{.fd = descriptor, .events = POLLIN, .revents = 0};
-    const int ready = left > 0 ? poll(&waiting, 1, static_cast<int>(left)) : 0;
-    if (ready < 0 && errno == EINTR) continue;
-    if (ready <= 0) return false;
-    char bytes[4096];
-    const ssize_t count = read(descriptor, bytes, sizeof bytes);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return true;
-    text.append(bytes, static_cast<std::size_t>(count));
-  }
-}
+/// What a program of Slurm printed, and how it ended.
+using Answer = engine::CommandResult;
 
 Answer ask(const std::vector<std::string>& arguments) {
-  const Descriptor nothing(open("/dev/null", O_RDONLY | O_CLOEXEC));
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0)
-    throw std::system_error(errno, std::generic_category(), "cannot start " + arguments.front());
-  const Descriptor from(ends[0]);
-  Descriptor to(ends[1]);
-  const pid_t process = engine::spawn({.arguments = arguments,
-                                       .input = nothing.get(),
-                                       .output = to.get(),
-                                       .answers = -1,
-                                       .address_space_bytes = 0,
-                                       .cpu_seconds = 0});
-  to.close();
-  Answer answer;
-  if (!read_all(from.get(), answer.text)) {
-    ::kill(-process, SIGKILL);
-    answer.text += " (no answer within " + std::to_string(kMostTime.count()) + " s)";
-  }
-  int status = 0;
-  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
-  }
-  answer.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  Answer answer = engine::run_command(arguments, {.seconds = kMostSeconds, .bytes = kMostBytes});
+  if (answer.exceeded == Answer::Bound::kSeconds)
+    answer.text += " (no answer within " + std::to_string(kMostSeconds) + " s)";
+  if (answer.exceeded == Answer::Bound::kBytes) answer.text.resize(kMostShownBytes);
   return answer;
 }
 

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace semigeo::engine {
+
+/// What a command may take before it is killed.
+struct CommandBounds {
+  double seconds = 60;                       ///< By the clock on the wall.
+  std::size_t bytes = std::size_t{1} << 26;  ///< Of output.
+};
+
+/// How a command ended, and what it printed.
+struct CommandResult {
+  enum class Bound { kNone, kSeconds, kBytes };
+  std::string text;               ///< Standard output and standard error as they came.
+  int exit_code = 0;              ///< -1 if a signal ended it.
+  Bound exceeded = Bound::kNone;  ///< The bound for which it was killed.
+};
+
+/// Runs a program to its end and returns what it printed. `arguments[0]` is the path of the
+/// program; PATH is not searched. Its standard input is empty. The end is when nobody holds the
+/// program's output any more and it has ended itself. What takes longer or prints more is killed
+/// with its process group, and the result says so; text up to there is kept. Throws
+/// std::system_error if the program cannot be started. Thread-safe.
+CommandResult run_command(const std::vector<std::string>& arguments, const CommandBounds& bounds);
+
+}  // namespace semigeo::engine
