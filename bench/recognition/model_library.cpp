@@ -34,7 +34,7 @@ std::unique_ptr<io::HashLibrary> ModelLibraries::without(
     const std::vector<std::size_t>& left_out) const {
   jobs::LibraryJob library{.runs = {},
                            .partitions = {},
-                           .parameters_json = "{}",
+                           .parameters = nlohmann::json::object(),
                            .output = folder_ / "library.h5",
                            .key = "bench"};
   for (const Run& run : runs_)

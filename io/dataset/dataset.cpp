@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "io/dataset/dataset_header.hpp"
 #include "io/dataset/vtkhdf.hpp"
 #include "io/files/error.hpp"
 #include "io/hdf5/array_reader.hpp"
@@ -26,16 +27,7 @@ std::string level_path(std::int64_t level) {
 Dataset::Dataset(const std::filesystem::path& path) : file_(open_complete(path, kDatasetFormat)) {
   digest_ = text("digest");
   creator_version_ = text("creator_version");
-  header_.parameters_json = text("parameters");
-  header_.input_name = text("input_name");
-  header_.input_xxh3 = text("input_xxh3");
-  header_.job_key = text("job_key");
-  header_.length_unit = text("length_unit");
-  header_.repairs_json = text("repairs");
-  header_.preparation_json = text("preparation");
-  const auto origin = file_.read_attribute_as<std::vector<double>>("/", "origin");
-  if (origin.size() != 3) file_.refuse("/", "its attribute origin must have three values");
-  std::ranges::copy(origin, header_.origin.begin());
+  header_ = std::make_shared<const DatasetHeader>(read_header());
   const std::vector<Hdf5Link> levels = file_.links("/levels");
   if (levels.empty() || levels.size() > kMostLevels)
     file_.refuse("/levels", "must hold 1 to " + std::to_string(kMostLevels) + " levels");
@@ -45,6 +37,20 @@ Dataset::Dataset(const std::filesystem::path& path) : file_(open_complete(path, 
   for (int k = 0; k < level_count_; ++k)
     if ("/levels/" + levels[k].name != level_path(k))
       file_.refuse("/levels", "its levels are not numbered from 000 without gaps");
+}
+
+DatasetHeader Dataset::read_header() const {
+  DatasetHeader header = {.parameters = read_json_attribute(file_, "parameters"),
+                          .input_name = text("input_name"),
+                          .input_xxh3 = text("input_xxh3"),
+                          .job_key = text("job_key"),
+                          .length_unit = text("length_unit"),
+                          .repairs = read_json_attribute(file_, "repairs"),
+                          .preparation = read_json_attribute(file_, "preparation")};
+  const auto origin = file_.read_attribute_as<std::vector<double>>("/", "origin");
+  if (origin.size() != 3) file_.refuse("/", "its attribute origin must have three values");
+  std::ranges::copy(origin, header.origin.begin());
+  return header;
 }
 
 std::string Dataset::text(const char* name) const {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,8 @@
 #include "io/hdf5/hdf5.hpp"
 
 namespace semigeo::io {
+
+struct DatasetHeader;  // io/dataset/dataset_header.hpp
 
 struct LevelInfo : LevelAttributes {
   std::int64_t vertices = 0;
@@ -28,7 +31,7 @@ class Dataset {
   explicit Dataset(const std::filesystem::path& path);
 
   const std::filesystem::path& path() const { return file_.path(); }
-  const DatasetHeader& header() const { return header_; }
+  const DatasetHeader& header() const { return *header_; }
   const std::string& creator_version() const { return creator_version_; }
   /// The content digest as stored: 32 hexadecimal digits.
   const std::string& digest() const { return digest_; }
@@ -61,13 +64,14 @@ class Dataset {
   void verify() const;
 
  private:
+  DatasetHeader read_header() const;
   std::string text(const char* name) const;
   /// The path of a level that exists.
   std::string existing(int level) const;
   void check_rows(const std::string& level, const LevelArray& array) const;
 
   Hdf5File file_;
-  DatasetHeader header_;
+  std::shared_ptr<const DatasetHeader> header_;
   std::string creator_version_;
   std::string digest_;
   int level_count_ = 0;

@@ -18,18 +18,6 @@ inline constexpr FileFormat kDatasetFormat = {.name = "semigeo-dataset",
                                               .remedy = "give a file that `semigeo run` made"};
 inline constexpr int kMostLevels = 1000;  // three digits
 
-/// Where a dataset comes from; attributes of the root.
-struct DatasetHeader {
-  std::string parameters_json = "{}";
-  std::string input_name;  ///< path of the scan below the folder that was searched, as UTF-8
-  std::string input_xxh3;  ///< XXH3_128 of the scan's bytes, 32 hexadecimal digits
-  std::string job_key;     ///< hash of everything the content depends on
-  std::string length_unit = "unknown";
-  std::string repairs_json = "{}";           ///< what was dropped or welded, with counts
-  std::string preparation_json = "{}";       ///< what was filled or decimated on request
-  std::array<double, 3> origin = {0, 0, 0};  ///< add to the points for the scan's coordinates
-};
-
 /// Attributes of one level; lengths in length_unit.
 struct LevelAttributes {
   std::int64_t iteration = 0;  ///< smoothings since level 0

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "io/dataset/dataset.hpp"
+#include "io/dataset/dataset_header.hpp"
 #include "io/dataset/xdmf.hpp"
 #include "io/files/error.hpp"
 
@@ -18,10 +19,10 @@ const LevelArray& format_of(std::string_view name) {
 void write_header(DigestedFile& file, const DatasetHeader& header) {
   const std::vector<double> origin(header.origin.begin(), header.origin.end());
   const std::pair<const char*, AttributeValue> attributes[] = {
-      {"length_unit", header.length_unit},    {"origin", origin},
-      {"parameters", header.parameters_json}, {"input_name", header.input_name},
-      {"input_xxh3", header.input_xxh3},      {"job_key", header.job_key},
-      {"repairs", header.repairs_json},       {"preparation", header.preparation_json},
+      {"length_unit", header.length_unit},      {"origin", origin},
+      {"parameters", header.parameters.dump()}, {"input_name", header.input_name},
+      {"input_xxh3", header.input_xxh3},        {"job_key", header.job_key},
+      {"repairs", header.repairs.dump()},       {"preparation", header.preparation.dump()},
   };
   write_format(file, kDatasetFormat);
   for (const auto& [name, value] : attributes) file.write_attribute("/", name, value);

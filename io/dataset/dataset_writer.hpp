@@ -13,6 +13,8 @@
 
 namespace semigeo::io {
 
+struct DatasetHeader;  // io/dataset/dataset_header.hpp
+
 /// What levels share while their connectivity stays the same.
 struct EncodedConnectivity {
   EncodedArray triangles;      ///< int64 (F, 3)

@@ -1,6 +1,7 @@
 #include "io/hdf5/complete_file.hpp"
 
 #include <future>
+#include <nlohmann/json.hpp>
 
 #include "io/files/error.hpp"
 
@@ -36,6 +37,15 @@ Hdf5File open_complete(const std::filesystem::path& path, const FileFormat& form
       file.read_attribute_as<std::int64_t>("/", "complete") != 1)
     file.refuse("", "was not written to its end");
   return file;
+}
+
+nlohmann::json read_json_attribute(const Hdf5File& file, const std::string& name) {
+  auto document = nlohmann::json::parse(file.read_attribute_as<std::string>("/", name), nullptr,
+                                        /*allow_exceptions=*/false);
+  if (document.is_discarded())
+    throw Error(file.path(), "attribute " + name, "is not JSON",
+                "the file is damaged or not one of semigeo's");
+  return document;
 }
 
 std::string complete_file(DigestedFile& digested, AtomicFile& target,

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "io/files/atomic_file.hpp"
@@ -23,6 +24,9 @@ void write_format(DigestedFile& file, const FileFormat& format);
 
 /// Opens a file for reading; refuses other formats, other versions, and unfinished files.
 Hdf5File open_complete(const std::filesystem::path& path, const FileFormat& format);
+
+/// Returns the JSON that a text attribute of the root holds. Error if it is none.
+nlohmann::json read_json_attribute(const Hdf5File& file, const std::string& name);
 
 /// Ends a file that is written under the temporary name of `target`: the digest, `complete`. Then
 /// `verify` reads it from the path that it is given, while it goes to the disk, and returns the

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "io/hdf5/array_reader.hpp"
@@ -85,7 +86,7 @@ struct HashLibrary::State {
 
   Hdf5File file;
   mutable std::mutex mutex;  // of the file; what it gave is checked and unpacked without
-  std::string parameters_json;
+  nlohmann::json parameters;
   std::string digest;
   Hdf5File::Array postings;
   Hdf5File::Array features;
@@ -106,7 +107,7 @@ struct HashLibrary::State {
 
 HashLibrary::State::State(const std::filesystem::path& path)
     : file(open_complete(path, kLibraryFormat)),
-      parameters_json(file.read_attribute_as<std::string>("/", "parameters")),
+      parameters(read_json_attribute(file, "parameters")),
       digest(file.read_attribute_as<std::string>("/", "digest")),
       postings(open_rows(file, kPostings, ElementType::posting, 1)),
       features(open(kFeatureArray)),
@@ -269,8 +270,8 @@ HashLibrary& HashLibrary::operator=(HashLibrary&&) noexcept = default;
 const std::filesystem::path& HashLibrary::path() const {
   return state_->file.path();
 }
-const std::string& HashLibrary::parameters_json() const {
-  return state_->parameters_json;
+const nlohmann::json& HashLibrary::parameters() const {
+  return state_->parameters;
 }
 const std::string& HashLibrary::digest() const {
   return state_->digest;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,8 +35,8 @@ class HashLibrary {
   HashLibrary& operator=(HashLibrary&&) noexcept;
 
   const std::filesystem::path& path() const;
-  const std::string& parameters_json() const;  ///< with which triplets were made
-  const std::string& digest() const;           ///< content digest, 32 hexadecimal digits
+  const nlohmann::json& parameters() const;  ///< with which triplets were made
+  const std::string& digest() const;         ///< content digest, 32 hexadecimal digits
   const std::vector<ModelInfo>& models() const;
 
   /// (kTripletCells + 1): postings of cell c are those from cells[c] to cells[c + 1].

@@ -12,7 +12,7 @@ namespace {
 DigestedFile begin_file(const AtomicFile& target, const LibraryHeader& header) {
   DigestedFile file(Hdf5File::create(target.temporary_path(), target.final_path()));
   write_format(file, kLibraryFormat);
-  file.write_attribute("/", "parameters", header.parameters_json);
+  file.write_attribute("/", "parameters", header.parameters.dump());
   file.write_attribute("/", "job_key", header.job_key);
   file.create_group("/models");
   return file;

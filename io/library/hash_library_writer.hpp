@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,8 +15,8 @@ namespace semigeo::io {
 
 /// Where a library comes from.
 struct LibraryHeader {
-  std::string parameters_json = "{}";  ///< with which its triplets were made
-  std::string job_key;                 ///< hash of everything the content depends on
+  nlohmann::json parameters = nlohmann::json::object();  ///< with which its triplets were made
+  std::string job_key;  ///< hash of everything the content depends on
 };
 
 /// How much of everything it will have.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/dataset/dataset.hpp"
+#include "io/dataset/dataset_header.hpp"
 #include "io/files/error.hpp"
 #include "io/scans/feature_writer.hpp"
 #include "io/scans/mesh_writer.hpp"

@@ -5,10 +5,12 @@
 #include <vector>
 
 #include "io/dataset/dataset.hpp"
+#include "io/dataset/dataset_header.hpp"
 #include "io/files/error.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/datasets.hpp"
 #include "jobs/cli/json_output.hpp"
+#include "jobs/stages/surface_job.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {
@@ -67,9 +69,6 @@ nlohmann::json level_json(const io::Dataset& dataset, int k) {
   const auto invalid = std::count(completeness.begin(), completeness.end(), 0.0f);
   const auto truncated =
       std::count_if(completeness.begin(), completeness.end(), [](float c) { return c < 1; });
-  nlohmann::json remeshing = nlohmann::json::object();
-  for (const io::LevelCount& count : io::kLevelCounts)
-    remeshing[count.name] = info.remeshed.*count.count;
   return {{"iteration", info.iteration},
           {"scale", info.scale},
           {"step", info.step},
@@ -78,21 +77,13 @@ nlohmann::json level_json(const io::Dataset& dataset, int k) {
           {"triangles", info.triangles},
           {"parts", info.parts},
           {"shortest_side", info.shortest_side},
-          {"remeshing", std::move(remeshing)},
+          {"remeshing", json_of(info.remeshed)},
           {"features", features_json(info.features)},
           {"contours", contours_json(info.features)},
           {"gaussian_curvature", {gaussian.low, gaussian.high}},
           {"mean_curvature", {mean.low, mean.high}},
           {"invalid_vertices", invalid},
           {"truncated_vertices", truncated - invalid}};
-}
-
-nlohmann::json parsed(const io::Dataset& dataset, const char* name, const std::string& text) {
-  auto document = nlohmann::json::parse(text, nullptr, false);
-  if (document.is_discarded())
-    throw io::Error(dataset.path(), std::string("attribute ") + name, "is not JSON",
-                    "the file is damaged or not one of semigeo's");
-  return document;
 }
 
 nlohmann::json dataset_json(const std::filesystem::path& path) {
@@ -104,9 +95,9 @@ nlohmann::json dataset_json(const std::filesystem::path& path) {
           {"input_name", header.input_name},
           {"input_xxh3", header.input_xxh3},
           {"creator_version", dataset.creator_version()},
-          {"parameters", parsed(dataset, "parameters", header.parameters_json)},
-          {"repairs", parsed(dataset, "repairs", header.repairs_json)},
-          {"preparation", parsed(dataset, "preparation", header.preparation_json)},
+          {"parameters", header.parameters},
+          {"repairs", header.repairs},
+          {"preparation", header.preparation},
           {"length_unit", header.length_unit},
           {"origin", header.origin},
           {"digest", dataset.digest()},

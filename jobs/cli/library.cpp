@@ -74,8 +74,7 @@ Models models_in(const std::vector<std::string>& inputs) {
 Models kept_models(const LibraryPlace& place, const RecognitionParameters& parameters) {
   const io::HashLibrary library(place.library);
   constexpr const char* kRemedy = "build it anew: semigeo library build DATASETS --output LIBRARY";
-  if (nlohmann::json::parse(library.parameters_json(), nullptr, false) !=
-      nlohmann::json::parse(to_json(parameters)))
+  if (library.parameters() != json_of(parameters))
     throw io::Error(place.library, "", "was made with other parameters", kRemedy);
   Models models;
   for (const io::ModelInfo& info : library.models()) {
@@ -164,7 +163,7 @@ int list(const LibraryOptions& options) {
                         {"triplets", model.triplets}});
     print_document({{"models", models},
                     {"postings", library.posting_count()},
-                    {"parameters", nlohmann::json::parse(library.parameters_json())},
+                    {"parameters", library.parameters()},
                     {"digest", library.digest()}});
     return kAllDone;
   }

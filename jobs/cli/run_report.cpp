@@ -91,10 +91,10 @@ void add_result(nlohmann::json& entry, const SurfaceJobResult& result,
   entry["triangles"] = result.triangles;
   entry["parts"] = result.parts;
   entry["levels"] = result.levels;
-  entry["repairs"] = nlohmann::json::parse(to_json(result.repairs));
-  entry["preparation"] = nlohmann::json::parse(to_json(result.preparation, parameters.preparation));
+  entry["repairs"] = json_of(result.repairs);
+  entry["preparation"] = json_of(result.preparation, parameters.preparation);
   entry["vanished"] = result.vanished;
-  entry["remeshing"] = nlohmann::json::parse(to_json(result.remeshed));
+  entry["remeshing"] = json_of(result.remeshed);
 }
 
 bool is_made(JobState state) {
@@ -203,7 +203,7 @@ void print_text(const std::vector<PlannedJob>& plan, const std::vector<JobOutcom
     const auto* result = surface_result(outcomes[i]);
     if (result == nullptr || result->repairs == kernels::SurfaceRepairs{}) continue;
     std::string changes;
-    const auto repairs = nlohmann::json::parse(to_json(result->repairs));
+    const nlohmann::json repairs = json_of(result->repairs);
     for (const auto& [name, count] : repairs.items()) {
       if (count.get<std::int64_t>() == 0) continue;
       std::string words = name;

@@ -55,7 +55,7 @@ JobResult run_stage(const Job& job, const JobParameters& parameters,
     case JobKind::kLibrary:
       return run_library_job({.runs = runs_of(job),
                               .partitions = partitions_of(job),
-                              .parameters_json = to_json(parameters.recognition),
+                              .parameters = json_of(parameters.recognition),
                               .output = job.output,
                               .key = job.key,
                               .memory_bytes = job.buffer_bytes},

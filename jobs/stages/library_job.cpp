@@ -170,8 +170,8 @@ LibraryJobResult run_library_job(const LibraryJob& job, const engine::RunContext
   const std::int64_t memory = memory_or_default(job.memory_bytes);
   const RunTotals runs = look_at_runs(job, context.workers);
   const std::deque<io::PostingPartition> partitions = open_partitions(job, runs);
-  io::HashLibraryWriter writer(
-      job.output, {.parameters_json = job.parameters_json, .job_key = job.key}, runs.sizes);
+  io::HashLibraryWriter writer(job.output, {.parameters = job.parameters, .job_key = job.key},
+                               runs.sizes);
   {
     const engine::Stopwatch stopwatch(context.observer, "postings");
     write_postings(partitions, memory, writer, context.workers);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace semigeo::jobs {
 struct LibraryJob {
   std::vector<std::filesystem::path> runs;        ///< as the partitions had them
   std::vector<std::filesystem::path> partitions;  ///< in the order of their shapes
-  std::string parameters_json;                    ///< with which the runs were made
+  nlohmann::json parameters;                      ///< with which the runs were made
   std::filesystem::path output;
   std::string key;                ///< hash of everything the library depends on
   std::int64_t memory_bytes = 0;  ///< for postings and buffers, at most; 0: 512 MiB

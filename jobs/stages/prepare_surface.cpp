@@ -130,7 +130,7 @@ void decimate(PreparedSurface& prepared, const PreparationOptions& options,
 
 }  // namespace
 
-std::string to_json(const PreparationResult& result, const PreparationOptions& options) {
+nlohmann::json json_of(const PreparationResult& result, const PreparationOptions& options) {
   nlohmann::json json = nlohmann::json::object();
   if (options.fill_holes > 0) {
     json["holes"] = result.holes.loops;
@@ -148,7 +148,11 @@ std::string to_json(const PreparationResult& result, const PreparationOptions& o
     json["decimation_distance_maximum"] = result.distance.maximum;
     json["decimation_distance_mean"] = result.distance.mean();
   }
-  return json.dump();
+  return json;
+}
+
+std::string to_json(const PreparationResult& result, const PreparationOptions& options) {
+  return json_of(result, options).dump();
 }
 
 PreparedSurface prepare_surface(Surface surface, const PreparationOptions& options,

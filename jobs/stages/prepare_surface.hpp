@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,10 @@ struct PreparationResult {
   bool operator==(const PreparationResult&) const = default;
 };
 
-/// As JSON with sorted keys; "{}" if nothing was asked for.
+/// Returns what was asked for and done as JSON with sorted keys, an empty object if nothing was.
+nlohmann::json json_of(const PreparationResult& result, const PreparationOptions& options);
+
+/// Returns that JSON as text.
 std::string to_json(const PreparationResult& result, const PreparationOptions& options);
 
 struct PreparedSurface {

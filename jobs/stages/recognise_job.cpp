@@ -24,7 +24,7 @@ kernels::RecognitionModel read_scene(const RecogniseJob& job,
   if (io::scan_format(job.scene)) {
     const ScanSurface scan = read_surface(job.scene, job.input_xxh3);
     scene.format = scan.format;
-    scene.repairs_json = scan.repairs_json;
+    scene.repairs = scan.repairs;
     scene.vertices = scan.built.surface.vertex_count();
     scene.triangles = scan.built.surface.face_count();
     return recognition_model(scan.built, scene_parameters(parameters), context);
@@ -57,18 +57,16 @@ RecognitionParameters parameters_of(const io::HashLibrary& library) {
   constexpr const char* kRemedy =
       "use the version of semigeo that made it, or build it anew: semigeo library build";
   try {
-    const RecognitionParameters parameters =
-        recognition_parameters_from_json(library.parameters_json());
-    if (nlohmann::json::parse(to_json(parameters)) ==
-            nlohmann::json::parse(library.parameters_json()) &&
-        parameters.levels >= 1 && parameters.levels <= kMostLevels &&
-        parameters.most_features >= 1 && parameters.samples >= 1)
+    const RecognitionParameters parameters = recognition_parameters_from_json(library.parameters());
+    if (json_of(parameters) == library.parameters() && parameters.levels >= 1 &&
+        parameters.levels <= kMostLevels && parameters.most_features >= 1 &&
+        parameters.samples >= 1)
       return parameters;
   } catch (const std::runtime_error&) {
   }
   throw io::Error(
       library.path(), "",
-      "was made with parameters that this version does not know: " + library.parameters_json(),
+      "was made with parameters that this version does not know: " + library.parameters().dump(),
       kRemedy);
 }
 

@@ -70,7 +70,7 @@ json scene_json(const RecognisedScene& scene) {
                    {"triangles", scene.triangles},
                    {"features", scene.features},
                    {"samples", scene.samples}};
-  if (!scene.repairs_json.empty()) document["repairs"] = json::parse(scene.repairs_json);
+  if (scene.repairs) document["repairs"] = json_of(*scene.repairs);
   return document;
 }
 
@@ -96,8 +96,8 @@ void write_recognised(const std::filesystem::path& path, const std::string& key,
       {"library",
        {{"digest", library.digest()},
         {"models", library.models().size()},
-        {"parameters", json::parse(library.parameters_json())}}},
-      {"search", json::parse(to_json(parameters))},
+        {"parameters", library.parameters()}}},
+      {"search", json_of(parameters)},
       {"scene_triplets", recognition.scene_triplets},
       {"matches", recognition.matches},
       {"models_ranked", ranking.size()},

@@ -3,10 +3,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 
 #include "io/library/hash_library.hpp"
 #include "jobs/stages/recognise_scene.hpp"
+#include "jobs/stages/scan_surface.hpp"
 #include "jobs/stages/search_parameters.hpp"
 
 namespace semigeo::jobs {
@@ -19,8 +21,8 @@ struct RecognisedScene {
   std::string name = {};
   std::string input_name = {};  ///< UTF-8
   std::string xxh3 = {};
-  std::string format = {};        ///< of the file
-  std::string repairs_json = {};  ///< of a scan
+  std::string format = {};                  ///< of the file
+  std::optional<ScanRepairs> repairs = {};  ///< only of a scan
   std::int64_t vertices = 0;
   std::int64_t triangles = 0;
   std::int64_t features = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "io/dataset/dataset_header.hpp"
 #include "jobs/stages/evolving_surface.hpp"
 #include "jobs/stages/level_features.hpp"
 #include "jobs/stages/surface_parameters.hpp"
@@ -132,7 +133,7 @@ void evolve(const kernels::Surface& surface, const RecognitionParameters& parame
 /// Whether features of a dataset are those that its surface would be evolved anew for.
 bool has_octaves(const io::Dataset& dataset) {
   try {
-    const SurfaceParameters made = surface_parameters_from_json(dataset.header().parameters_json);
+    const SurfaceParameters made = surface_parameters_from_json(dataset.header().parameters);
     SurfaceParameters wanted = made;
     wanted.evolution = kOctaves;
     wanted.evolution.rescale = made.evolution.rescale;  // octaves are never rescaled

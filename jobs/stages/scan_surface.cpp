@@ -14,16 +14,6 @@ namespace {
 constexpr double kShortestMeanEdge = 1e-12;
 constexpr double kLongestMeanEdge = 1e12;
 
-nlohmann::json repairs_json(const kernels::SurfaceRepairs& repairs) {
-  return {{"degenerate_faces", repairs.degenerate_faces},
-          {"duplicate_faces", repairs.duplicate_faces},
-          {"flipped_faces", repairs.flipped_faces},
-          {"isolated_vertices", repairs.isolated_vertices},
-          {"nonmanifold_faces", repairs.nonmanifold_faces},
-          {"split_vertices", repairs.split_vertices},
-          {"welded_vertices", repairs.welded_vertices}};
-}
-
 void check_usable(const std::filesystem::path& scan, const kernels::BuiltSurface& built) {
   if (built.surface.face_count() == 0)
     throw io::Error(scan, "",
@@ -39,8 +29,26 @@ void check_usable(const std::filesystem::path& scan, const kernels::BuiltSurface
 
 }  // namespace
 
+nlohmann::json json_of(const kernels::SurfaceRepairs& repairs) {
+  return {{"degenerate_faces", repairs.degenerate_faces},
+          {"duplicate_faces", repairs.duplicate_faces},
+          {"flipped_faces", repairs.flipped_faces},
+          {"isolated_vertices", repairs.isolated_vertices},
+          {"nonmanifold_faces", repairs.nonmanifold_faces},
+          {"split_vertices", repairs.split_vertices},
+          {"welded_vertices", repairs.welded_vertices}};
+}
+
+nlohmann::json json_of(const ScanRepairs& repairs) {
+  nlohmann::json json = json_of(repairs.surface);
+  json["polygons_triangulated"] = repairs.polygons_triangulated;
+  json["faces_skipped"] = repairs.faces_skipped;
+  json["bytes_after_end"] = repairs.bytes_after_end;
+  return json;
+}
+
 std::string to_json(const kernels::SurfaceRepairs& repairs) {
-  return repairs_json(repairs).dump();
+  return json_of(repairs).dump();
 }
 
 ScanSurface read_surface(const std::filesystem::path& path, const std::string& xxh3) {
@@ -51,11 +59,10 @@ ScanSurface read_surface(const std::filesystem::path& path, const std::string& x
   result.built = kernels::build_surface(std::move(scan.mesh));
   check_usable(path, result.built);
   result.format = scan.format;
-  nlohmann::json repairs = repairs_json(result.built.repairs);
-  repairs["polygons_triangulated"] = scan.polygons_triangulated;
-  repairs["faces_skipped"] = scan.faces_skipped;
-  repairs["bytes_after_end"] = scan.bytes_after_end;
-  result.repairs_json = repairs.dump();
+  result.repairs = {.surface = result.built.repairs,
+                    .polygons_triangulated = scan.polygons_triangulated,
+                    .faces_skipped = scan.faces_skipped,
+                    .bytes_after_end = scan.bytes_after_end};
   return result;
 }
 

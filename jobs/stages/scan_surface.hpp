@@ -1,20 +1,34 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "kernels/repair/surface_builder.hpp"
 
 namespace semigeo::jobs {
 
+/// Counts what was changed and passed over while a scan was read and repaired.
+struct ScanRepairs {
+  kernels::SurfaceRepairs surface;
+  std::int64_t polygons_triangulated = 0;  ///< Faces with more than three corners.
+  std::int64_t faces_skipped = 0;          ///< Faces with fewer than three corners.
+  std::int64_t bytes_after_end = 0;        ///< Bytes behind all that the scan's header promises.
+};
+
 /// What a scan file holds, repaired.
 struct ScanSurface {
   kernels::BuiltSurface built;
-  std::string format;        ///< of the scan: "PLY binary little endian", ...
-  std::string repairs_json;  ///< counts of what was changed and passed over, keys sorted
+  std::string format;  ///< Format of the scan: "PLY binary little endian", ...
+  ScanRepairs repairs;
 };
 
-/// Counts as JSON with sorted keys.
+/// Returns the counts as JSON with sorted keys.
+nlohmann::json json_of(const kernels::SurfaceRepairs& repairs);
+nlohmann::json json_of(const ScanRepairs& repairs);
+
+/// Returns the counts as the text of their JSON.
 std::string to_json(const kernels::SurfaceRepairs& repairs);
 
 /// Reads and repairs a scan. `xxh3` is the digest of its bytes as they were. Throws io::Error on an

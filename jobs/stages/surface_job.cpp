@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/task_graph.hpp"
+#include "io/dataset/dataset_header.hpp"
 #include "io/dataset/dataset_writer.hpp"
 #include "jobs/stages/evolving_surface.hpp"
 #include "jobs/stages/level_features.hpp"
@@ -204,17 +205,21 @@ io::Selection selection(std::vector<std::int64_t> feature_counts, std::optional<
 
 }  // namespace
 
-std::string to_json(const kernels::RemeshCounts& remeshed) {
+nlohmann::json json_of(const kernels::RemeshCounts& remeshed) {
   nlohmann::json json;
   for (const io::LevelCount& count : io::kLevelCounts) json[count.name] = remeshed.*count.count;
-  return json.dump();
+  return json;
+}
+
+std::string to_json(const kernels::RemeshCounts& remeshed) {
+  return json_of(remeshed).dump();
 }
 
 SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters& parameters,
                                  const engine::RunContext& context) {
   SurfaceJobResult result;
   io::DatasetHeader header;
-  header.parameters_json = to_json(parameters);
+  header.parameters = json_of(parameters);
   header.length_unit = parameters.length_unit;
   header.input_name = job.input_name;
   header.input_xxh3 = job.input_xxh3;
@@ -227,12 +232,12 @@ SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters&
     ScanSurface scan = read_surface(job.input, job.input_xxh3);
     result.format = scan.format;
     result.repairs = scan.built.repairs;
-    header.repairs_json = scan.repairs_json;
+    header.repairs = json_of(scan.repairs);
     header.origin = {scan.built.origin.x(), scan.built.origin.y(), scan.built.origin.z()};
     PreparedSurface prepared =
         prepare_surface(std::move(scan.built.surface), parameters.preparation, context);
     result.preparation = prepared.result;
-    header.preparation_json = to_json(prepared.result, parameters.preparation);
+    header.preparation = json_of(prepared.result, parameters.preparation);
     result.vertices = prepared.surface.vertex_count();
     result.triangles = prepared.surface.face_count();
     result.parts = prepared.surface.part_count;

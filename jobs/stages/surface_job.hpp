@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "engine/run_context.hpp"
@@ -36,7 +37,10 @@ struct SurfaceJobResult {
   bool vanished = false;           ///< the last level is but a triangle or a tetrahedron
 };
 
-/// Counts as JSON with sorted keys.
+/// Returns the counts that datasets have as JSON with sorted keys.
+nlohmann::json json_of(const kernels::RemeshCounts& remeshed);
+
+/// Returns that JSON as text.
 std::string to_json(const kernels::RemeshCounts& remeshed);
 
 /// Reads and repairs one scan, evolves it through all levels and writes its dataset, which appears

@@ -1,6 +1,7 @@
 #include "jobs/stages/triplets_job.hpp"
 
 #include "io/dataset/dataset.hpp"
+#include "io/dataset/dataset_header.hpp"
 #include "io/library/triplet_run.hpp"
 #include "jobs/stages/recognition_features.hpp"
 #include "kernels/recognition/triplet.hpp"

@@ -63,7 +63,7 @@ void library(benchmark::State& state) {
   const engine::RunContext context{workers, times, {}};
   jobs::LibraryJob job{.runs = {},
                        .partitions = {},
-                       .parameters_json = "{}",
+                       .parameters = nlohmann::json::object(),
                        .output = folder / "library.h5",
                        .key = "key",
                        .memory_bytes = std::int64_t{512} << 20};

@@ -9,6 +9,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "io/dataset/dataset_header.hpp"
 #include "io/files/error.hpp"
 #include "io/hdf5/hdf5_library.hpp"
 #include "tests/io/dataset/sample_dataset.hpp"
@@ -64,12 +65,13 @@ TEST_P(DatasetRoundTrip, EverythingComesBack) {
   EXPECT_FALSE(dataset.creator_version().empty());
   const DatasetHeader wanted = tests::sample_header();
   const DatasetHeader& header = dataset.header();
-  EXPECT_EQ(header.parameters_json, wanted.parameters_json);
+  EXPECT_EQ(header.parameters, wanted.parameters);
   EXPECT_EQ(header.input_name, wanted.input_name);
   EXPECT_EQ(header.input_xxh3, wanted.input_xxh3);
   EXPECT_EQ(header.job_key, wanted.job_key);
   EXPECT_EQ(header.length_unit, wanted.length_unit);
-  EXPECT_EQ(header.repairs_json, wanted.repairs_json);
+  EXPECT_EQ(header.repairs, wanted.repairs);
+  EXPECT_EQ(header.preparation, wanted.preparation);
   EXPECT_EQ(header.origin, wanted.origin);
 
   const Selection selection = dataset.selection();

@@ -81,12 +81,13 @@ SampleLevel sample_level(const Sample& sample, int level) {
 }
 
 io::DatasetHeader sample_header() {
-  return {.parameters_json = R"({"levels": 3})",
+  return {.parameters = {{"levels", 3}},
           .input_name = "vases/Krug Nº 7.ply",
           .input_xxh3 = "0123456789abcdef0123456789abcdef",
           .job_key = "key-of-the-job",
           .length_unit = "mm",
-          .repairs_json = R"({"duplicate_faces": 2})",
+          .repairs = {{"duplicate_faces", 2}},
+          .preparation = {{"holes", 1}},
           .origin = {1000.5, -2, 3}};
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "io/dataset/dataset_header.hpp"
 #include "io/dataset/dataset_writer.hpp"
 
 namespace semigeo::tests {

@@ -94,7 +94,7 @@ class HashLibraryTest : public testing::Test {
 TEST_F(HashLibraryTest, HoldsWhatWasWritten) {
   const SampleLibrary sample(90);  // more than a block, and a part of one
   const HashLibrary library(write(sample));
-  EXPECT_EQ(library.parameters_json(), R"({"levels":3})");
+  EXPECT_EQ(library.parameters(), (nlohmann::json{{"levels", 3}}));
   EXPECT_EQ(library.digest(), digest_);
   EXPECT_EQ(library_key(library.path()), "key");
   ASSERT_EQ(library.models().size(), sample.models.size());

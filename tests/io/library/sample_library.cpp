@@ -42,8 +42,7 @@ std::string write_library(const std::filesystem::path& path, const SampleLibrary
     sizes.level_scales += static_cast<std::int64_t>(model.features.level_scale.size());
     sizes.samples += static_cast<std::int64_t>(model.samples.points.size());
   }
-  io::HashLibraryWriter writer(path, {.parameters_json = R"({"levels":3})", .job_key = "key"},
-                               sizes);
+  io::HashLibraryWriter writer(path, {.parameters = {{"levels", 3}}, .job_key = "key"}, sizes);
   const std::vector<std::byte> rows = io::packed(std::span(sample.postings), io::kPostingBytes);
   const io::ArrayShape& shape = writer.posting_shape();
   const auto block = static_cast<std::size_t>(shape.chunk_bytes());

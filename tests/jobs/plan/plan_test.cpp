@@ -11,6 +11,7 @@
 
 #include "engine/run_context.hpp"
 #include "io/dataset/dataset.hpp"
+#include "io/dataset/dataset_header.hpp"
 #include "io/dataset/xdmf.hpp"
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"

@@ -58,7 +58,7 @@ class LibraryJobsTest : public testing::Test {
   LibraryJobResult library(const std::vector<fs::path>& partitions, const Way& way) {
     const LibraryJob job{.runs = runs_,
                          .partitions = partitions,
-                         .parameters_json = R"({"levels":3})",
+                         .parameters = {{"levels", 3}},
                          .output = folder_ / "built.h5",
                          .key = "key",
                          .memory_bytes = way.memory};
@@ -137,7 +137,7 @@ TEST_F(LibraryJobsTest, SaysWhatItMade) {
   EXPECT_EQ(result.digest, made.digest());
   EXPECT_EQ(io::posting_partition_key(folder_ / "100-672"), "partition key");
   EXPECT_EQ(io::library_key(folder_ / "built.h5"), "key");
-  EXPECT_EQ(made.parameters_json(), R"({"levels":3})");
+  EXPECT_EQ(made.parameters(), (nlohmann::json{{"levels", 3}}));
 }
 
 TEST_F(LibraryJobsTest, NoModelsNoPostings) {

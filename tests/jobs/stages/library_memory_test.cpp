@@ -76,7 +76,7 @@ Peaks build(int models) {
   }
   const LibraryJob library{.runs = partition.runs,
                            .partitions = {partition.output},
-                           .parameters_json = "{}",
+                           .parameters = nlohmann::json::object(),
                            .output = folder / "library.h5",
                            .key = "key",
                            .memory_bytes = kMemory};

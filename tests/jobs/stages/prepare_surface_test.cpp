@@ -41,7 +41,7 @@ TEST(PrepareSurfaceTest, NothingIsDoneUnlessAskedFor) {
   EXPECT_EQ(prepared.surface.face_count(), 1280 - 3 * 6);
   EXPECT_TRUE(prepared.vertex_filled.empty() && prepared.face_filled.empty());
   EXPECT_EQ(prepared.result, PreparationResult{});
-  EXPECT_EQ(to_json(prepared.result, {}), "{}");
+  EXPECT_EQ(json_of(prepared.result, {}).dump(), "{}");
 }
 
 TEST(PrepareSurfaceTest, HolesAreFilledAndMarked) {
@@ -54,7 +54,7 @@ TEST(PrepareSurfaceTest, HolesAreFilledAndMarked) {
   ASSERT_EQ(prepared.face_filled.size(), prepared.surface.triangles.size());
   EXPECT_EQ(std::ranges::count(prepared.face_filled, 1), prepared.result.filled_faces);
   EXPECT_EQ(prepared.surface.face_count() - prepared.result.filled_faces, 1280 - 3 * 6);
-  const auto json = nlohmann::json::parse(to_json(prepared.result, options));
+  const nlohmann::json json = json_of(prepared.result, options);
   EXPECT_EQ(json.at("holes_filled"), 3);
   EXPECT_FALSE(json.contains("removed_vertices"));
 }

@@ -47,9 +47,9 @@ class RecogniseJobTest : public testing::Test {
                      .input_xxh3 = job_.input_xxh3,
                      .key = "s"},
                     {.levels = 1}, context_);
-    make_library(to_json(RecognitionParameters{}));
+    make_library(json_of(RecognitionParameters{}));
   }
-  void make_library(const std::string& parameters_json) {
+  void make_library(const nlohmann::json& parameters) {
     const fs::path run = folder_ / "torus.run";
     run_triplets_job({.dataset = dataset_,
                       .name = "torus",
@@ -62,7 +62,7 @@ class RecogniseJobTest : public testing::Test {
     job_.library = folder_ / "library.h5";
     job_.library_digest = run_library_job({.runs = {run},
                                            .partitions = {part},
-                                           .parameters_json = parameters_json,
+                                           .parameters = parameters,
                                            .output = job_.library,
                                            .key = "l"},
                                           context_)
@@ -139,15 +139,17 @@ TEST_F(RecogniseJobTest, WhatHasChangedMeanwhileIsRefused) {
 }
 
 TEST_F(RecogniseJobTest, ParametersThatAreUnknownAreRefused) {
-  std::string more = to_json(RecognitionParameters{});
-  more.insert(1, R"("more":1,)");
-  const std::string no_levels = to_json(RecognitionParameters{.levels = 0});
-  for (const std::string& parameters :
-       {std::string(), std::string("none"), std::string("7"), std::string(R"({"levels":3})"),
-        std::string(R"({"levels":3,"most_features":400,"samples":4000,"torsion":true})"), no_levels,
-        more}) {
+  using nlohmann::json;
+  const json known = json_of(RecognitionParameters{});
+  json more = known;
+  more["more"] = 1;
+  json less = known;
+  less.erase("least_reach");
+  for (const json& parameters : {json(), json("none"), json(7), json{{"levels", 3}}, less, more,
+                                 json_of(RecognitionParameters{.levels = 0})}) {
     make_library(parameters);
-    EXPECT_NE(refused().find("parameters that this version does not know"), std::string::npos)
+    EXPECT_NE(refused().find("parameters that this version does not know: " + parameters.dump()),
+              std::string::npos)
         << parameters;
   }
 }

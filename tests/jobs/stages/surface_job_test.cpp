@@ -12,6 +12,7 @@
 #include <numeric>
 
 #include "io/dataset/dataset.hpp"
+#include "io/dataset/dataset_header.hpp"
 #include "io/dataset/xdmf.hpp"
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
@@ -82,13 +83,13 @@ TEST_F(SurfaceJobTest, DatasetOfASphere) {
   const io::Dataset dataset(job.output);
   dataset.verify();
   const io::DatasetHeader& header = dataset.header();
-  EXPECT_EQ(header.parameters_json, to_json(parameters));
+  EXPECT_EQ(header.parameters, json_of(parameters));
   EXPECT_EQ(header.input_name, job.input_name);
   EXPECT_EQ(header.input_xxh3, job.input_xxh3);
   EXPECT_EQ(header.job_key, job.key);
   EXPECT_EQ(header.length_unit, "mm");
   EXPECT_EQ(header.origin, (std::array<double, 3>{0, 0, 0}));
-  const auto repairs = nlohmann::json::parse(header.repairs_json);
+  const nlohmann::json& repairs = header.repairs;
   EXPECT_EQ(repairs.size(), 10u);
   for (const auto& [name, count] : repairs.items()) EXPECT_EQ(count, 0) << name;
 
@@ -250,18 +251,17 @@ TEST_F(SurfaceJobTest, RepairsAreCountedInTheDataset) {
   const SurfaceJobResult result = run(job, {.levels = 1});
   EXPECT_EQ(result.vertices, 4);
   EXPECT_EQ(result.triangles, 4);
-  EXPECT_EQ(nlohmann::json::parse(io::Dataset(job.output).header().repairs_json),
-            (nlohmann::json{{"welded_vertices", 1},
-                            {"degenerate_faces", 1},
-                            {"duplicate_faces", 1},
-                            {"flipped_faces", 0},
-                            {"nonmanifold_faces", 1},
-                            {"split_vertices", 0},
-                            {"isolated_vertices", 3},
-                            {"polygons_triangulated", 0},
-                            {"bytes_after_end", 0},
-                            {"faces_skipped", 1}}));
-  EXPECT_EQ(nlohmann::json::parse(to_json(result.repairs)).at("isolated_vertices"), 3);
+  EXPECT_EQ(io::Dataset(job.output).header().repairs, (nlohmann::json{{"welded_vertices", 1},
+                                                                      {"degenerate_faces", 1},
+                                                                      {"duplicate_faces", 1},
+                                                                      {"flipped_faces", 0},
+                                                                      {"nonmanifold_faces", 1},
+                                                                      {"split_vertices", 0},
+                                                                      {"isolated_vertices", 3},
+                                                                      {"polygons_triangulated", 0},
+                                                                      {"bytes_after_end", 0},
+                                                                      {"faces_skipped", 1}}));
+  EXPECT_EQ(json_of(result.repairs).at("isolated_vertices"), 3);
 }
 
 TEST_F(SurfaceJobTest, AScanWithoutUsableTrianglesIsRefused) {
