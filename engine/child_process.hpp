@@ -17,89 +17,100 @@
 
 namespace semigeo::engine {
 
-/// What a child process may take; 0 = no limit of ours.
+/// Holds the limits of a child process. A limit of 0 is no limit of ours.
 struct ProcessLimits {
-  /// Allocations beyond it fail in the child, which has to end by itself.
+  /// Allocations beyond this number of bytes fail in the child, which has to end by itself.
   std::uint64_t address_space_bytes = 0;
-  double cpu_seconds = 0;   ///< of all its threads together, rounded up to whole seconds
-  double wall_seconds = 0;  ///< kept while the owner is inside `wait`
+  double cpu_seconds = 0;   ///< CPU time of all its threads together, rounded up to whole seconds.
+  double wall_seconds = 0;  ///< Time on the clock. It is enforced while the owner is inside `wait`.
 };
 
+/// Describes what a child process runs, and under which limits.
 struct Command {
-  std::vector<std::string> arguments;  ///< [0] is the path of the program; PATH is not searched
+  std::vector<std::string> arguments;  ///< [0] is the path of the program. PATH is not searched.
   ProcessLimits limits = {};
-  /// Takes standard output and standard error; made, with its folder. Empty: they are dropped.
+  /// This file takes standard output and standard error. It is created together with its folder. If
+  /// the path is empty, both are dropped.
   std::filesystem::path log = {};
-  bool append_to_log = false;  ///< else the log starts empty
-  /// The child gets lines on descriptor 0 and answers with lines on descriptor 3
-  /// (kAnswersDescriptor). Otherwise its standard input is empty.
+  bool append_to_log = false;  ///< If false, the log starts empty.
+  /// If true, the child gets lines on descriptor 0 and answers with lines on descriptor 3
+  /// (kAnswersDescriptor). If false, its standard input is empty.
   bool converses = false;
 };
 
-/// Child processes with limits, and everything that comes from them in one queue. Used by one
-/// thread, which must live as long as the children: they are killed when it ends, even by SIGKILL.
+/// Runs child processes with limits and puts everything that comes from them into one queue. It is
+/// used by one thread, which must live as long as the children: they are killed when it ends, even
+/// by SIGKILL.
 ///
 /// A child and what it starts are one process group. The group is killed with its child, and no
-/// child outlives this object. An id is never used twice; on a child that has ended, every function
+/// child outlives this object. An id is never used twice. On a child that has ended, every function
 /// that takes an id does nothing.
 ///
-/// Every function throws std::system_error where the system lets it down. Needs Linux 5.11.
+/// Every function throws std::system_error if a system call fails. Needs Linux 5.11.
 class ChildProcesses {
  public:
   using Id = std::int64_t;
+  /// The limit that ended a child.
   enum class Limit { kNone, kWallTime, kCpuTime, kLineLength };
   static constexpr double kForever = std::numeric_limits<double>::infinity();
-  /// A child that sends a longer line is killed: a broken one must not fill our memory.
+  /// A child that sends a longer line is killed: a broken one must not fill our memory. In bytes.
   static constexpr std::size_t kLongestLine = std::size_t{1} << 20;
 
+  /// Nothing happened within the time that `wait` was given.
   struct TimedOut {};
+  /// Somebody called `wake`.
   struct Woken {};
+  /// A child has sent a line.
   struct Line {
     Id child;
-    std::string text;  ///< without the newline
+    std::string text;  ///< The line without its newline.
   };
-  /// Comes after the child's last line. What it sent after its last newline is dropped.
+  /// A child has ended. This event comes after the child's last line. What the child sent after its
+  /// last newline is dropped.
   struct Ended {
     Id child;
-    int exit_code;  ///< -1 if it ended by a signal
-    int signal;     ///< 0 if it ended by itself
-    Limit limit;    ///< the limit that ended it; one on address space shows in the exit code only
+    int exit_code;  ///< -1 if a signal ended the child.
+    int signal;     ///< 0 if the child ended by itself.
+    Limit limit;    ///< The limit that ended it. One on address space shows in the exit code only.
     double wall_seconds;
     double cpu_seconds;
-    /// At least what this process had resident when it started the child, which Linux counts too.
+    /// Never less than what this process had resident when it started the child, which Linux counts
+    /// too.
     std::uint64_t peak_resident_bytes;
   };
   using Event = std::variant<TimedOut, Woken, Line, Ended>;
 
-  /// Where SIGCHLD is ignored, it becomes default: the kernel would keep no exit code for us.
+  /// Makes SIGCHLD default where it is ignored, because the kernel would keep no exit code for us.
   ChildProcesses();
-  /// Kills the children that are left, and waits for them.
+  /// Kills the children that are left and waits for them.
   ~ChildProcesses();
   ChildProcesses(const ChildProcesses&) = delete;
   ChildProcesses& operator=(const ChildProcesses&) = delete;
 
-  /// Throws std::system_error, too, when the program is missing or cannot be executed.
+  /// Starts a child. Throws std::system_error also if the program is missing or cannot be executed.
   Id start(const Command& command);
   std::size_t running() const { return children_.size(); }
 
-  /// The line must hold no newline. Never waits: what the child does not read yet is kept here and
-  /// sent during `wait`.
+  /// Sends a line, which must hold no newline. Never waits: what the child does not read yet is
+  /// kept here and sent during `wait`.
   void send(Id child, std::string_view line);
-  /// The child finds its input ended after what has been sent.
+  /// Ends the input of the child after what has been sent.
   void close_input(Id child);
 
-  /// New limits on time, counted from now, instead of those before: for a child that does one job
-  /// after the other. 0 = none, for one that waits for its next job.
+  /// Replaces the limits on time by new ones, counted from now: for a child that does one job after
+  /// another. 0 means no limit, for a child that waits for its next job.
   void restart_clocks(Id child, double cpu_seconds, double wall_seconds);
 
-  /// SIGTERM and SIGKILL, to the child's process group.
+  /// Sends SIGTERM to the child's process group.
   void terminate(Id child);
+  /// Sends SIGKILL to the child's process group.
   void kill(Id child);
 
-  /// The next event, in the order of arrival; TimedOut when there is none for so many seconds.
+  /// Returns the next event in the order of arrival, or TimedOut if there is none within this
+  /// number of seconds.
   Event wait(double seconds = kForever);
-  /// Makes `wait` return Woken, the current call or the next. Several calls may give one Woken. For
-  /// signal handlers and other threads.
+  /// Makes `wait` return Woken, in the current call or in the next. Several calls may give one
+  /// Woken. May be called by signal handlers and by other threads.
   void wake() noexcept;
 
  private:

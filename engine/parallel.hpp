@@ -6,18 +6,19 @@
 
 namespace semigeo::engine {
 
-/// Indices begin, ..., end - 1.
+/// The indices begin, ..., end - 1.
 struct IndexRange {
   std::int64_t begin;
   std::int64_t end;
 };
 
-/// A bounded set of threads that share index ranges and tasks. All parallelism goes through here,
-/// so that the library behind it can be exchanged (oneTBB, or std::thread where a sanitizer must
-/// see every synchronisation). Thread-safe; may be used from inside its own tasks.
+/// Runs index ranges and tasks on a bounded set of threads. All parallelism goes through here, so
+/// that the library behind it can be exchanged (oneTBB, or std::thread where a sanitizer must see
+/// every synchronisation). Thread-safe; may be used from inside its own tasks.
 class Workers {
  public:
-  /// At most `threads` at once, the caller's included; 0 means one per available core.
+  /// Uses at most `threads` threads at once, including the caller's; 0 means one for each available
+  /// core.
   explicit Workers(int threads = 0);
   ~Workers();
   Workers(const Workers&) = delete;
@@ -25,14 +26,15 @@ class Workers {
 
   int threads() const { return threads_; }
 
-  /// Calls body on consecutive blocks of `block` indices (the last may be shorter) that cover
-  /// [0, count), in any order, on any thread; returns when all are done. Which blocks there are
-  /// does not depend on the number of threads, so results stored per block reduce to the same
-  /// value. The first exception stops the handing out of blocks and is rethrown here.
+  /// Calls `body` on consecutive blocks of `block` indices (the last may be shorter) that cover [0,
+  /// count), in any order, on any thread. Returns when all are done. Which blocks there are does
+  /// not depend on the number of threads, so results that are stored for each block reduce to the
+  /// same value. The first exception stops the handing out of blocks and is rethrown here.
   void for_blocks(std::int64_t count, std::int64_t block,
                   const std::function<void(IndexRange)>& body);
 
-  /// Tasks that may start more tasks, the one given last preferred. Tasks must not throw.
+  /// Runs tasks that may start more tasks. The task that was given last is preferred. Tasks must
+  /// not throw.
   class Group {
    public:
     virtual ~Group() = default;

@@ -4,23 +4,23 @@
 
 namespace semigeo::engine {
 
-/// So many cores and so many bytes of memory: of a machine, or for a job.
+/// An amount of cores and of memory: of a machine, or for a job.
 struct Amount {
   int cores = 0;
   std::uint64_t bytes = 0;
 };
 
-/// Decides what may run side by side. Not thread-safe. What to ask for next is the caller's affair:
-/// if it goes on with small jobs whenever a large one is refused, the large one waits for long.
+/// Decides what may run side by side. Not thread-safe. The caller chooses what to ask for next: if
+/// it goes on with small jobs whenever a large one is refused, the large one waits for long.
 class Resources {
  public:
   explicit Resources(Amount total) : total_(total) {}
 
-  /// Whether a job that takes `wanted` may start now; if so, its share is taken. What is running
-  /// never takes more than there is, except for a job that takes more by itself: it is admitted
-  /// when nothing else runs, and until its release nothing else is.
+  /// Returns whether a job that takes `wanted` may start now; if so, its share is taken. What is
+  /// running never takes more than there is, except for a job that takes more by itself: it is
+  /// admitted when nothing else runs, and nothing else is admitted until its release.
   bool admit(Amount wanted);
-  /// Gives back what was admitted. Throws std::logic_error if so much is not in use.
+  /// Gives back what was admitted. Throws std::logic_error if less is in use.
   void release(Amount wanted);
 
   int running() const { return running_; }

@@ -8,8 +8,8 @@ namespace semigeo::engine {
 
 /// What a command may take before it is killed.
 struct CommandBounds {
-  double seconds = 60;                       ///< By the clock on the wall.
-  std::size_t bytes = std::size_t{1} << 26;  ///< Of output.
+  double seconds = 60;                       ///< Time on the clock.
+  std::size_t bytes = std::size_t{1} << 26;  ///< Number of bytes of output.
 };
 
 /// How a command ended, and what it printed.

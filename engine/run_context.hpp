@@ -7,8 +7,7 @@
 
 namespace semigeo::engine {
 
-/// What a computation is given of its surroundings: threads, the wish that it stop, somebody to
-/// tell.
+/// Gives a computation its surroundings: threads, somebody to tell, and the wish that it stop.
 struct RunContext {
   Workers& workers;
   Observer& observer;

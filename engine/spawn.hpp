@@ -13,14 +13,14 @@ namespace semigeo::engine {
 /// The descriptor on which a child answers, besides its descriptors 0 to 2.
 inline constexpr int kAnswersDescriptor = 3;
 
-/// What `spawn` starts. The descriptors belong to the caller and may be any.
+/// Describes what `spawn` starts. The descriptors belong to the caller and may have any numbers.
 struct Program {
-  const std::vector<std::string>& arguments;  ///< [0] is the path of the program
-  int input;                                  ///< becomes descriptor 0
-  int output;                                 ///< becomes 1 and 2
-  int answers;                                ///< becomes 3; -1 = there is no 3
-  std::uint64_t address_space_bytes;          ///< 0 = as much as this process may have
-  double cpu_seconds;                         ///< 0 = as much as this process may have
+  const std::vector<std::string>& arguments;  ///< [0] is the path of the program.
+  int input;                                  ///< Becomes descriptor 0.
+  int output;                                 ///< Becomes descriptors 1 and 2.
+  int answers;                        ///< Becomes descriptor 3; -1 = there is no such descriptor.
+  std::uint64_t address_space_bytes;  ///< 0 = as much as this process may have.
+  double cpu_seconds;                 ///< 0 = as much as this process may have.
 };
 
 /// Starts a program in a process of its own, which
@@ -33,12 +33,12 @@ struct Program {
 /// this process uses.
 pid_t spawn(const Program& program);
 
-/// A descriptor that is readable when the process has ended, whoever its parent is. Throws
+/// Returns a descriptor that is readable when the process has ended, whoever its parent is. Throws
 /// std::system_error.
 Descriptor watch(pid_t process);
 
-/// Sends the process SIGXCPU when it will have used so many CPU seconds since its start, rounded up
-/// to whole ones; 0 = as many as it may have.
+/// Lets the process get SIGXCPU when it has used this number of CPU seconds since its start,
+/// rounded up to whole ones. 0 means as many as it may have. Throws std::system_error.
 void limit_cpu_time(pid_t process, double seconds);
 
 }  // namespace semigeo::engine

@@ -11,7 +11,7 @@ namespace semigeo::engine {
 /// Tells an observer at its end how long the scope that holds it took.
 class Stopwatch {
  public:
-  /// `stretch` and the observer must outlive it.
+  /// Begins to measure. `stretch` and the observer must outlive this object.
   Stopwatch(Observer& observer, std::string_view stretch)
       : observer_(observer), stretch_(stretch), start_(Clock::now()), cpu_start_(std::clock()) {}
   ~Stopwatch() {

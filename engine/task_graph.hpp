@@ -10,25 +10,25 @@
 
 namespace semigeo::engine {
 
-/// Named tasks with dependencies, run once on a set of workers. A task starts when all it comes
-/// after have succeeded; when one throws, everything that depends on it, directly or not, is
-/// skipped and the rest goes on.
+/// Runs named tasks with dependencies once, on a set of workers. A task starts when all tasks that
+/// it comes after have succeeded. When one throws, everything that depends on it, directly or not,
+/// is skipped, and the rest goes on.
 class TaskGraph {
  public:
   using Task = std::int32_t;
   enum class State { kDone, kFailed, kSkipped };
   struct Outcome {
     State state = State::kSkipped;
-    std::exception_ptr error;  ///< what a failed task threw
+    std::exception_ptr error;  ///< What a failed task threw.
   };
 
-  /// Adds a task that comes after the tasks `after`, which must have been added before (so no cycle
-  /// can arise). Of several ready tasks the one with the highest `cost` is preferred; a task's
-  /// own parallelism is its own affair.
+  /// Adds a task that comes after the tasks `after`, which must have been added before, so that no
+  /// cycle can arise. Among ready tasks the one with the highest `cost` is preferred. A task may
+  /// use the workers itself.
   Task add(std::string name, const std::vector<Task>& after, std::function<void()> work,
            double cost = 1);
 
-  /// Runs all tasks; result[t] is the outcome of task t. After a stop request no further task
+  /// Runs all tasks. result[t] is the outcome of task t. After a stop request no further task
   /// starts.
   std::vector<Outcome> run(const RunContext& context);
 
@@ -38,7 +38,7 @@ class TaskGraph {
  private:
   struct Node {
     std::string name;
-    std::vector<Task> before;  ///< tasks that come after this one
+    std::vector<Task> before;  ///< Tasks that come after this one.
     std::int32_t dependencies = 0;
     std::function<void()> work;
     double cost = 1;

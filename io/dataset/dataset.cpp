@@ -92,8 +92,8 @@ LevelInfo Dataset::level(int level) const {
   info.vertices = file_.shape_of(path + "/points").rows;
   info.triangles = file_.shape_of(path + "/triangles").rows;
   for (const LevelArray& array : kLevelArrays) {
-    if (array.presence == Presence::principal && !principal_) continue;
-    if (array.presence == Presence::filled && !filled_) continue;
+    if (array.presence == Presence::kPrincipal && !principal_) continue;
+    if (array.presence == Presence::kFilled && !filled_) continue;
     check_rows(path, array);
   }
   info.features = check_features(file_, path);
@@ -103,7 +103,7 @@ LevelInfo Dataset::level(int level) const {
 std::vector<float> Dataset::read_floats(int level, std::string_view name) const {
   const std::string place = existing(level);
   const LevelArray* array = find_array(name);
-  if (array == nullptr || array->type != ElementType::float32)
+  if (array == nullptr || array->type != ElementType::kFloat32)
     throw Error(path(), place + "/" + std::string(name), "is no array of floats");
   check_rows(place, *array);
   return io::read_floats(file_, place + "/" + array->name, array->columns);
@@ -112,7 +112,7 @@ std::vector<float> Dataset::read_floats(int level, std::string_view name) const 
 std::vector<std::int64_t> Dataset::read_integers(int level, std::string_view name) const {
   const std::string place = existing(level);
   const LevelArray* array = find_array(name);
-  if (array == nullptr || array->type == ElementType::float32)
+  if (array == nullptr || array->type == ElementType::kFloat32)
     throw Error(path(), place + "/" + std::string(name), "is no array of integers");
   check_rows(place, *array);
   return io::read_integers(file_, place + "/" + array->name, array->columns);

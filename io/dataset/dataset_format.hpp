@@ -16,20 +16,22 @@ inline constexpr FileFormat kDatasetFormat = {.name = "semigeo-dataset",
                                               .version = kDatasetFormatVersion,
                                               .noun = "dataset",
                                               .remedy = "give a file that `semigeo run` made"};
-inline constexpr int kMostLevels = 1000;  // three digits
+/// Levels have numbers of three digits.
+inline constexpr int kMostLevels = 1000;
 
-/// Attributes of one level; lengths in length_unit.
+/// The attributes of one level. Lengths are in length_unit.
 struct LevelAttributes {
-  std::int64_t iteration = 0;  ///< smoothings since level 0
-  double step = 0;             ///< sampling step of the patches
-  double scale = 0;            ///< true sigma; strictly increasing from level to level
+  std::int64_t iteration = 0;  ///< Number of smoothings since level 0.
+  double step = 0;             ///< Sampling step of the patches.
+  double scale = 0;            ///< True sigma. It increases strictly from level to level.
   double mean_edge_length = 0;
-  std::int64_t parts = 0;               ///< connected parts
-  double shortest_side = 0;             ///< no side and no height is shorter; 0: not seen to
-  kernels::RemeshCounts remeshed = {};  ///< what was done to the level before
+  std::int64_t parts = 0;  ///< Number of connected parts.
+  double shortest_side =
+      0;  ///< No side and no height of a triangle is shorter; 0 if nothing saw to that.
+  kernels::RemeshCounts remeshed = {};  ///< What remeshing did to the level before.
 };
 
-/// Those of the counts that are attributes, by their names.
+/// A count of remeshing that is an attribute, with its name.
 struct LevelCount {
   const char* name;
   std::int64_t kernels::RemeshCounts::*count;
@@ -44,40 +46,40 @@ inline constexpr std::array<LevelCount, 7> kLevelCounts = {{
     {"dropped_parts", &kernels::RemeshCounts::dropped_parts},
 }};
 
-/// Which levels have an array.
+/// Says which datasets have an array.
 enum class Presence {
-  always,
-  principal,  ///< all, where principal curvatures were asked for
-  filled      ///< all, where holes were to be filled
+  kAlways,     ///< All datasets.
+  kPrincipal,  ///< Datasets for which principal curvatures were asked for.
+  kFilled      ///< Datasets whose holes were to be filled.
 };
 
-/// An array of a level: (N) or (N, columns) over its vertices, or over its triangles.
+/// Describes an array of a level: (N) or (N, columns) over its vertices, or over its triangles.
 struct LevelArray {
   const char* name;
   ElementType type;
   int columns;
   bool per_triangle;
-  bool connectivity;  ///< shared by the levels until one brings its own
+  bool connectivity;  ///< Levels share it until one brings its own.
   Presence presence;
 };
 inline constexpr std::array<LevelArray, 14> kLevelArrays = {{
-    {"points", ElementType::float32, 3, false, false, Presence::always},
-    {"normals", ElementType::float32, 3, false, false, Presence::always},
-    {"gaussian_curvature", ElementType::float32, 1, false, false, Presence::always},
-    {"mean_curvature", ElementType::float32, 1, false, false, Presence::always},
-    {"patch_completeness", ElementType::float32, 1, false, false, Presence::always},
-    {"principal_curvature_1", ElementType::float32, 1, false, false, Presence::principal},
-    {"principal_curvature_2", ElementType::float32, 1, false, false, Presence::principal},
-    {"principal_direction_1", ElementType::float32, 3, false, false, Presence::principal},
-    {"principal_direction_2", ElementType::float32, 3, false, false, Presence::principal},
-    {"triangles", ElementType::int64, 3, true, true, Presence::always},
-    {"source_vertex", ElementType::int64, 1, false, true, Presence::always},
-    {"part", ElementType::int32, 1, false, true, Presence::always},
-    {"vertex_filled", ElementType::uint8, 1, false, true, Presence::filled},
-    {"face_filled", ElementType::uint8, 1, true, true, Presence::filled},
+    {"points", ElementType::kFloat32, 3, false, false, Presence::kAlways},
+    {"normals", ElementType::kFloat32, 3, false, false, Presence::kAlways},
+    {"gaussian_curvature", ElementType::kFloat32, 1, false, false, Presence::kAlways},
+    {"mean_curvature", ElementType::kFloat32, 1, false, false, Presence::kAlways},
+    {"patch_completeness", ElementType::kFloat32, 1, false, false, Presence::kAlways},
+    {"principal_curvature_1", ElementType::kFloat32, 1, false, false, Presence::kPrincipal},
+    {"principal_curvature_2", ElementType::kFloat32, 1, false, false, Presence::kPrincipal},
+    {"principal_direction_1", ElementType::kFloat32, 3, false, false, Presence::kPrincipal},
+    {"principal_direction_2", ElementType::kFloat32, 3, false, false, Presence::kPrincipal},
+    {"triangles", ElementType::kInt64, 3, true, true, Presence::kAlways},
+    {"source_vertex", ElementType::kInt64, 1, false, true, Presence::kAlways},
+    {"part", ElementType::kInt32, 1, false, true, Presence::kAlways},
+    {"vertex_filled", ElementType::kUint8, 1, false, true, Presence::kFilled},
+    {"face_filled", ElementType::kUint8, 1, true, true, Presence::kFilled},
 }};
 
-/// "/levels/007".
+/// Returns the path of a level: "/levels/007".
 std::string level_path(std::int64_t level);
 
 }  // namespace semigeo::io

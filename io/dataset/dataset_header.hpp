@@ -17,7 +17,7 @@ struct DatasetHeader {
   std::string length_unit = "unknown";
   nlohmann::json repairs = nlohmann::json::object();      ///< Counts of what was dropped or welded.
   nlohmann::json preparation = nlohmann::json::object();  ///< What was filled or decimated.
-  std::array<double, 3> origin = {0, 0, 0};               ///< Add it to the points for the scan's.
+  std::array<double, 3> origin = {0, 0, 0};  ///< It is added to the points to get the scan's own.
 };
 
 }  // namespace semigeo::io

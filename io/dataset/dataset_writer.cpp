@@ -108,7 +108,7 @@ void DatasetWriter::write_level(const LevelAttributes& attributes, const Encoded
   feature_counts_.push_back(fields.features.counts.total());
   if (!connectivity_pending_)
     for (const LevelArray& array : kLevelArrays)
-      if (array.connectivity && (filled_ || array.presence != Presence::filled))
+      if (array.connectivity && (filled_ || array.presence != Presence::kFilled))
         file_.link(connectivity_level_ + "/" + array.name, level + "/" + array.name);
   steps_.push_back({.value = attributes.scale,
                     .level = level,
@@ -142,7 +142,7 @@ std::string DatasetWriter::finish() {
   });
   // The sidecar first: a dataset under its final name counts as done and is not looked at again.
   write_file_atomically(sidecar_of(target_.final_path()),
-                        xdmf_text(target_.final_path().filename().string(), steps_), Folder::left);
+                        xdmf_text(target_.final_path().filename().string(), steps_), Folder::kLeft);
   target_.commit();
   return digest;
 }

@@ -17,12 +17,12 @@ struct DatasetHeader;  // io/dataset/dataset_header.hpp
 
 /// What levels share while their connectivity stays the same.
 struct EncodedConnectivity {
-  EncodedArray triangles;      ///< int64 (F, 3)
-  EncodedArray source_vertex;  ///< int64 (N): vertex of level 0, or -1
-  EncodedArray part;           ///< int32 (N): connected part
-  /// Marks of what filling holes has made: 1, else 0; in every level or in none.
-  std::optional<EncodedArray> vertex_filled = {};  ///< uint8 (N)
-  std::optional<EncodedArray> face_filled = {};    ///< uint8 (F)
+  EncodedArray triangles;      ///< int64 (F, 3).
+  EncodedArray source_vertex;  ///< int64 (N): the vertex of level 0, or -1.
+  EncodedArray part;           ///< int32 (N): the connected part.
+  /// Marks what filling holes has made with 1, all else with 0. Every level has the marks, or none.
+  std::optional<EncodedArray> vertex_filled = {};  ///< uint8 (N).
+  std::optional<EncodedArray> face_filled = {};    ///< uint8 (F).
 };
 
 /// Principal curvatures k1 >= k2, in length^-1, and their unit directions.
@@ -41,32 +41,33 @@ struct EncodedFields {
   EncodedArray mean_curvature;      ///< float32 (N), length^-1
   EncodedArray patch_completeness;  ///< float32 (N), 1 = whole patch, 0 = invalid
   EncodedFeatures features;
-  std::optional<EncodedPrincipal> principal = {};  ///< in every level or in none
+  std::optional<EncodedPrincipal> principal = {};  ///< Every level has it, or none.
 };
 
 /// Writes one dataset (docs/formats/dataset.md), which appears under its final name whole and
 /// verified or not at all. The same calls give the same bytes. Encode with
 /// io/files/chunk_codec.hpp, on any number of threads; call the writer from one thread at a time.
 ///
-/// Throws Error naming the final path when the disk refuses, std::invalid_argument when arrays do
-/// not fit each other. After either the writer can only be destroyed, which removes what it wrote.
+/// Throws Error, which names the final path, when the disk refuses, and std::invalid_argument when
+/// arrays do not fit each other. After either the writer can only be destroyed, which removes what
+/// it wrote.
 class DatasetWriter {
  public:
   DatasetWriter(const std::filesystem::path& final_path, const DatasetHeader& header,
                 Compression compression);
 
-  /// Connectivity of the next level and those after it; level 0 must bring one.
+  /// Writes the connectivity of the next level and those after it. Level 0 must bring one.
   void write_connectivity(const EncodedConnectivity& connectivity);
 
-  /// The next level, from 0 on.
+  /// Writes the next level, from 0 on.
   void write_level(const LevelAttributes& attributes, const EncodedFields& fields);
 
-  /// After the last level; its counts must be those of the levels' features.
+  /// Writes the selection, after the last level. Its counts must be those of the levels' features.
   void write_selection(const Selection& selection);
 
   /// Writes /VTKHDF, the content digest and `complete`, forces the file to the disk, reads all of
-  /// it back and compares, writes the XDMF sidecar and gives the file its name. Returns the
-  /// content digest. At least one level and the selection must have been written.
+  /// it back and compares, writes the XDMF sidecar and gives the file its name. Returns the content
+  /// digest. At least one level and the selection must have been written.
   std::string finish();
 
  private:

@@ -22,8 +22,8 @@ static_assert(offsetof(Feature, vertex) == 0 && offsetof(Feature, value) == 8 &&
               offsetof(Feature, initial_position) == 28 && offsetof(Feature, normal) == 40 &&
               offsetof(Feature, scale_free_gaussian) == 52 &&
               offsetof(Feature, scale_free_mean) == 56 && kFeatureBytes == 60);
-static_assert(sizeof(FeatureRow) == size_of(ElementType::feature) &&
-              sizeof(ContourRow) == size_of(ElementType::contour));
+static_assert(sizeof(FeatureRow) == size_of(ElementType::kFeature) &&
+              sizeof(ContourRow) == size_of(ElementType::kContour));
 
 /// A table of a level.
 struct Table {
@@ -37,10 +37,10 @@ struct Table {
     return shape.type == type && shape.columns == columns;
   }
 };
-constexpr Table kFeatures = {"features", &EncodedFeatures::features, ElementType::feature, 1};
-constexpr Table kContours = {"contours", &EncodedFeatures::contours, ElementType::contour, 1};
-constexpr Table kPoints = {"contour_points", &EncodedFeatures::contour_points, ElementType::float32,
-                           4};
+constexpr Table kFeatures = {"features", &EncodedFeatures::features, ElementType::kFeature, 1};
+constexpr Table kContours = {"contours", &EncodedFeatures::contours, ElementType::kContour, 1};
+constexpr Table kPoints = {"contour_points", &EncodedFeatures::contour_points,
+                           ElementType::kFloat32, 4};
 
 constexpr const char* kFeatureCounts = "feature_counts";
 constexpr const char* kContourCounts = "contour_counts";
@@ -187,15 +187,15 @@ FeatureTables tables_of(const kernels::LevelFeatures& features) {
 }
 
 ArrayView array_of(std::span<const FeatureRow> rows) {
-  return detail::rows_of(rows, ElementType::feature, ElementType::feature, 1, {});
+  return detail::rows_of(rows, ElementType::kFeature, ElementType::kFeature, 1, {});
 }
 
 ArrayView array_of(std::span<const ContourRow> rows) {
-  return detail::rows_of(rows, ElementType::contour, ElementType::contour, 1, {});
+  return detail::rows_of(rows, ElementType::kContour, ElementType::kContour, 1, {});
 }
 
 ArrayView array_of(std::span<const ContourPointRow> rows) {
-  return detail::rows_of(rows, ElementType::float32, ElementType::float32, 4, {});
+  return detail::rows_of(rows, ElementType::kFloat32, ElementType::kFloat32, 4, {});
 }
 
 EncodedFeatures encode_features(const FeatureTables& tables, Compression compression) {

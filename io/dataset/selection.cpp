@@ -14,7 +14,7 @@ constexpr const char* kSmoothed = "/selection/smoothed";
 }  // namespace
 
 const char* name_of(Chosen chosen) {
-  return chosen == Chosen::slope ? "slope" : "option";
+  return chosen == Chosen::kSlope ? "slope" : "option";
 }
 
 void write_selection(DigestedFile& file, const Selection& selection, Compression compression) {
@@ -40,9 +40,9 @@ Selection read_selection(const Hdf5File& file, int levels) {
     file.refuse(kGroup,
                 "chose level " + std::to_string(selection.level) + " of " + std::to_string(levels));
   const auto chosen = file.read_attribute_as<std::string>(kGroup, "chosen");
-  if (chosen != name_of(Chosen::slope) && chosen != name_of(Chosen::option))
+  if (chosen != name_of(Chosen::kSlope) && chosen != name_of(Chosen::kOption))
     file.refuse(kGroup, "its attribute chosen is neither slope nor option");
-  selection.chosen = chosen == name_of(Chosen::slope) ? Chosen::slope : Chosen::option;
+  selection.chosen = chosen == name_of(Chosen::kSlope) ? Chosen::kSlope : Chosen::kOption;
   return selection;
 }
 

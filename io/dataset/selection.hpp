@@ -7,25 +7,27 @@
 
 namespace semigeo::io {
 
-/// Who chose the level of a dataset.
+/// Says who chose the level of a dataset.
 enum class Chosen {
-  slope,  ///< the curve of the counts: where it is flattest
-  option  ///< the user
+  kSlope,  ///< The curve of the counts, where it is flattest.
+  kOption  ///< The user.
 };
 const char* name_of(Chosen chosen);
 
-/// The level at which a scan is recognised, and what it was chosen by. L levels.
+/// The level at which a scan is recognised, and why. L is the number of levels.
 struct Selection {
-  std::vector<std::int64_t> feature_counts;  ///< (L) of each level, all kinds together
-  std::vector<double> smoothed;              ///< (L) the counts, smoothed along the levels
+  std::vector<std::int64_t>
+      feature_counts;            ///< (L) Number of features of each level, of all kinds together.
+  std::vector<double> smoothed;  ///< (L) The counts, smoothed along the levels.
   std::int64_t level = 0;
-  Chosen chosen = Chosen::slope;
+  Chosen chosen = Chosen::kSlope;
 };
 
 /// Writes the group /selection.
 void write_selection(DigestedFile& file, const Selection& selection, Compression compression);
 
-/// Error if something is missing, or does not fit a dataset of so many levels.
+/// Reads the group /selection. Throws Error if something is missing, or does not fit a dataset of
+/// this number of levels.
 Selection read_selection(const Hdf5File& file, int levels);
 
 }  // namespace semigeo::io

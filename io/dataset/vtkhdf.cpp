@@ -38,7 +38,7 @@ Table polygon_column(const std::vector<std::int64_t>& values) {
 }
 
 void add_views(VtkhdfLayout& layout, std::span<const VtkhdfStep> steps, std::size_t parts) {
-  VtkhdfLayout::View points{ElementType::float32, 3, {}};
+  VtkhdfLayout::View points{ElementType::kFloat32, 3, {}};
   for (const VtkhdfStep& step : steps)
     points.pieces.push_back({step.level + "/points", step.vertices});
   layout.views["Points"] = std::move(points);
@@ -48,7 +48,7 @@ void add_views(VtkhdfLayout& layout, std::span<const VtkhdfStep> steps, std::siz
       view.pieces.push_back({step.level + "/" + array.source, step.vertices});
     layout.views[std::string("PointData/") + array.name] = std::move(view);
   }
-  VtkhdfLayout::View connectivity{ElementType::int64, 1, {}};
+  VtkhdfLayout::View connectivity{ElementType::kInt64, 1, {}};
   for (std::size_t k = 0; k < parts; ++k)
     connectivity.pieces.push_back({steps[k].level + "/triangles", kCorners * steps[k].triangles});
   layout.views["Polygons/Connectivity"] = std::move(connectivity);
@@ -58,7 +58,7 @@ void add_views(VtkhdfLayout& layout, std::span<const VtkhdfStep> steps, std::siz
 // chunk by chunk: the whole would take more memory than the triangles.
 EncodedArray encode_offsets(const std::vector<std::int64_t>& triangles_of_part,
                             Compression compression) {
-  ArrayView view{ElementType::int64, ElementType::int64};
+  ArrayView view{ElementType::kInt64, ElementType::kInt64};
   for (const std::int64_t triangles : triangles_of_part) view.rows += triangles + 1;
   EncodedArray array{shape_of(view, compression), {}};
   std::size_t part = 0;
@@ -91,9 +91,9 @@ void create_groups(DigestedFile& file, const VtkhdfLayout& layout) {
 std::vector<VtkhdfPointArray> point_arrays_of(const VtkhdfStep& step) {
   std::vector<VtkhdfPointArray> arrays;
   for (const VtkhdfPointArray& array : kVtkhdfPointArrays)
-    if (array.presence == Presence::always ||
-        (array.presence == Presence::principal && step.principal) ||
-        (array.presence == Presence::filled && step.filled))
+    if (array.presence == Presence::kAlways ||
+        (array.presence == Presence::kPrincipal && step.principal) ||
+        (array.presence == Presence::kFilled && step.filled))
       arrays.push_back(array);
   return arrays;
 }

@@ -109,13 +109,13 @@ class Check {
     const Numbers expected = starts(vertices_, sum);
     require(numbers("Steps/PointOffsets") == expected, "Steps/PointOffsets",
             "must be the sums of the points of the steps before");
-    view("Points", ElementType::float32, 3, sum);
+    view("Points", ElementType::kFloat32, 3, sum);
     std::vector<std::string> names;
     require(file_.has("/VTKHDF/PointData"), "PointData", "VTKHDF needs it, but it is missing");
     for (const Hdf5Link& link : file_.links("/VTKHDF/PointData")) {
       const std::string path = "PointData/" + link.name;
       require(link.name.find('.') == std::string::npos, path, "its name must not have a '.'");
-      require(link.kind == Hdf5Link::Kind::array, path, "must be a dataset");
+      require(link.kind == Hdf5Link::Kind::kArray, path, "must be a dataset");
       const ArrayShape shape = file_.open_array("/VTKHDF/" + path).shape();
       view(path, shape.type, shape.columns, sum);
       require(numbers("Steps/PointDataOffsets/" + link.name) == expected,
@@ -186,7 +186,7 @@ class Check {
     step_column("Steps/CellOffsets", kPolygons, changes_ ? starts(cells, unused) : none);
     step_column("Steps/ConnectivityIdOffsets", kPolygons,
                 changes_ ? starts(corners, unused) : none);
-    view("Polygons/Connectivity", ElementType::int64, 1, all_corners);
+    view("Polygons/Connectivity", ElementType::kInt64, 1, all_corners);
     polygon_offsets(cells);
   }
 
@@ -196,7 +196,7 @@ class Check {
     const Hdf5File::Array array = file_.open_array("/VTKHDF/" + path);
     const std::int64_t rows = std::accumulate(cells.begin(), cells.end(), std::int64_t{0}) +
                               static_cast<std::int64_t>(cells.size());
-    require(!array.is_virtual() && array.shape().type == ElementType::int64 &&
+    require(!array.is_virtual() && array.shape().type == ElementType::kInt64 &&
                 array.shape().columns == 1 && array.shape().rows == rows,
             path, "must be int64, one more than cells for each part");
     std::size_t part = 0;

@@ -39,10 +39,10 @@ std::string number(double value) {
 
 std::string data_item(const std::string& dataset, const std::string& path, ElementType type,
                       std::int64_t rows, int columns) {
-  const bool real = type == ElementType::float32 || type == ElementType::float64;
+  const bool real = type == ElementType::kFloat32 || type == ElementType::kFloat64;
   std::string shape = std::to_string(rows);
   if (columns > 1) shape.append(" ").append(std::to_string(columns));
-  const std::string kind = real ? "Float" : type == ElementType::uint8 ? "UChar" : "Int";
+  const std::string kind = real ? "Float" : type == ElementType::kUint8 ? "UChar" : "Int";
   return "          <DataItem Format=\"HDF\" NumberType=\"" + kind + "\" Precision=\"" +
          std::to_string(size_of(type)) + "\" Dimensions=\"" + shape + "\">" +
          escaped(dataset + ":" + path) + "</DataItem>\n";
@@ -54,9 +54,9 @@ std::string grid(const std::string& dataset, const VtkhdfStep& step) {
       "        <Time Value=\"" + number(step.value) + "\"/>\n" +
       "        <Topology TopologyType=\"Triangle\" NumberOfElements=\"" +
       std::to_string(step.triangles) + "\">\n" +
-      data_item(dataset, step.level + "/triangles", ElementType::int64, step.triangles, 3) +
+      data_item(dataset, step.level + "/triangles", ElementType::kInt64, step.triangles, 3) +
       "        </Topology>\n        <Geometry GeometryType=\"XYZ\">\n" +
-      data_item(dataset, step.level + "/points", ElementType::float32, step.vertices, 3) +
+      data_item(dataset, step.level + "/points", ElementType::kFloat32, step.vertices, 3) +
       "        </Geometry>\n";
   for (const VtkhdfPointArray& array : point_arrays_of(step))
     text += std::string("        <Attribute Name=\"") + array.name + "\" AttributeType=\"" +

@@ -8,16 +8,16 @@
 
 namespace semigeo::io {
 
-/// The XDMF sidecar of a dataset, for viewers that do not know temporal VTKHDF: one grid per level
-/// in a temporal collection, referring to the arrays under /levels. `dataset_name` is the name of
-/// the dataset's file, which must lie in the same folder.
+/// Returns the XDMF sidecar of a dataset, for viewers that do not know temporal VTKHDF: one grid
+/// for each level in a temporal collection, referring to the arrays under /levels. `dataset_name`
+/// is the name of the dataset's file, which must lie in the same folder.
 std::string xdmf_text(const std::string& dataset_name, std::span<const VtkhdfStep> steps);
 
-/// Where the sidecar of a dataset lies.
+/// Returns where the sidecar of a dataset lies.
 std::filesystem::path sidecar_of(const std::filesystem::path& dataset);
 
-/// What the sidecar of a dataset must say, from the dataset's attributes and sizes. Error if the
-/// dataset is damaged.
+/// Returns what the sidecar of a dataset must say, from the dataset's attributes and sizes. Throws
+/// Error if the dataset is damaged.
 std::string sidecar_text(const std::filesystem::path& dataset);
 
 }  // namespace semigeo::io

@@ -107,7 +107,7 @@ void AtomicFile::sync() {
 void AtomicFile::commit(Folder folder) {
   if (!synced_) sync();
   commit_unsynced();
-  if (folder == Folder::synced)
+  if (folder == Folder::kSynced)
     sync_path(folder_of(final_path_), folder_of(final_path_), O_DIRECTORY);
 }
 

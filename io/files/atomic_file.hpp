@@ -6,20 +6,20 @@
 
 namespace semigeo::io {
 
-/// By what temporary files and locks name this host; "localhost" if it has no name.
+/// Returns the name of this host in temporary files and locks: "localhost" if it has no name.
 std::string host_name();
 
-/// Whether a folder is forced to the disk, which makes the names in it last. `left`: another file
-/// of the folder gets its name next, and both names last together.
-enum class Folder { synced, left };
+/// Says whether a folder is forced to the disk, which makes the names in it last. kLeft: another
+/// file of the folder gets its name next, and both names last together.
+enum class Folder { kSynced, kLeft };
 
 /// A file that appears under its final name whole or not at all. It is written under a temporary
-/// name in the same folder, ".<name>.<host>.<pid>.partial", and renamed by `commit`; without a
-/// commit the destructor removes it. Writers in different processes, on one host or several, do
-/// not meet; within a process one final name must have one writer at a time.
+/// name in the same folder, ".<name>.<host>.<pid>.partial", and renamed by `commit`. Without a
+/// commit the destructor removes it. Writers in different processes, on one host or several, do not
+/// meet. Within a process one final name must have one writer at a time.
 class AtomicFile {
  public:
-  /// Only composes the name; a leftover of the same name is removed.
+  /// Composes the temporary name and removes a leftover that has it. Creates nothing.
   explicit AtomicFile(std::filesystem::path final_path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -28,15 +28,15 @@ class AtomicFile {
   const std::filesystem::path& final_path() const { return final_path_; }
   const std::filesystem::path& temporary_path() const { return temporary_path_; }
 
-  /// Forces what was written (and closed) to the disk; Error if that fails. Nothing may be written
-  /// afterwards.
+  /// Forces what was written (and closed) to the disk. Nothing may be written afterwards. Throws
+  /// Error if it fails.
   void sync();
 
-  /// Sync, if that has not been done, rename to the final name (replacing what stood there), sync
-  /// of the folder.
-  void commit(Folder folder = Folder::synced);
-  /// The rename alone: a hundred times as fast, but after a power cut the file may have any bytes
-  /// under its final name. For what is checked before it is used, and easily made again.
+  /// Syncs, if that has not been done, renames to the final name (replacing what stood there), and
+  /// syncs the folder if asked to.
+  void commit(Folder folder = Folder::kSynced);
+  /// Renames without any sync: a hundred times as fast, but after a power cut the file may have any
+  /// bytes under its final name. For what is checked before it is used, and easily made again.
   void commit_unsynced();
 
  private:
@@ -46,12 +46,13 @@ class AtomicFile {
   bool committed_ = false;
 };
 
-/// Writes a small file whole, by way of AtomicFile.
+/// Writes a small file whole or not at all, as AtomicFile does. Throws Error if it fails.
 void write_file_atomically(const std::filesystem::path& path, std::string_view content,
-                           Folder folder = Folder::synced);
+                           Folder folder = Folder::kSynced);
 
-/// Removes the temporary files in `folder` that dead processes of this host left; returns how many.
-/// Those of other hosts and of living processes stay. A folder that does not exist holds none.
+/// Removes the temporary files in `folder` that dead processes of this host left, and returns how
+/// many. Files of other hosts and of living processes stay. A folder that does not exist holds
+/// none.
 int remove_stale_partials(const std::filesystem::path& folder);
 
 }  // namespace semigeo::io

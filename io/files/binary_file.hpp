@@ -15,15 +15,16 @@
 
 namespace semigeo::io {
 
-/// A kind of binary file of ours (docs/formats/library.md): magic and version, data, a head that
-/// tells what the data is, and a trailer that finds the head and has its checksum. Little endian.
+/// Describes a kind of binary file of ours (docs/formats/library.md): it has a magic and a version,
+/// data, a head that tells what the data is, and a trailer that finds the head and has its
+/// checksum. All of it is little endian.
 struct BinaryFormat {
-  std::string_view magic;  ///< 8 characters
-  std::uint32_t version;   ///< the one that this program reads
-  const char* noun;        ///< as messages have it: "a run of triplets"
+  std::string_view magic;  ///< 8 characters.
+  std::uint32_t version;   ///< The version that this program reads.
+  const char* noun;        ///< Name of the kind in messages: "a run of triplets".
 };
 
-/// Numbers and texts one after the other.
+/// Collects numbers and texts for the head of a file, one after the other.
 class HeadWriter {
  public:
   template <typename Number>
@@ -35,7 +36,7 @@ class HeadWriter {
   void numbers(std::span<const Number> values) {
     bytes_.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
   }
-  /// Its length first.
+  /// Adds a text, its length first.
   void text(std::string_view text) {
     number(static_cast<std::uint32_t>(text.size()));
     bytes_.append(text);
@@ -46,13 +47,14 @@ class HeadWriter {
   std::string bytes_;
 };
 
+/// Writes a binary file: data first, the head last. Every failure is an Error.
 class BinaryWriter {
  public:
   BinaryWriter(const std::filesystem::path& path, const BinaryFormat& format);
   void data(std::span<const std::byte> bytes);
   /// Ends the file, which then appears under its name.
   void finish(const HeadWriter& head);
-  /// As AtomicFile::commit_unsynced.
+  /// Ends the file as AtomicFile::commit_unsynced does.
   void finish_unsynced(const HeadWriter& head);
 
  private:
@@ -61,8 +63,8 @@ class BinaryWriter {
   OutputFile file_;
 };
 
-/// Opening checks all but the data. Every failure is an Error. `read` may be called by several
-/// threads at once.
+/// Reads a binary file. Opening it checks everything but the data. Every failure is an Error.
+/// `read` may be called by several threads at once.
 class BinaryFile {
  public:
   BinaryFile(const std::filesystem::path& path, const BinaryFormat& format);
@@ -71,7 +73,7 @@ class BinaryFile {
   std::uint64_t head_hash() const { return head_hash_; }
   std::uint64_t data_bytes() const { return data_bytes_; }
 
-  // The head, from its beginning to its end; Error if it ends too early.
+  // These read the head from its beginning to its end. They throw Error if it ends too early.
   template <typename Number>
   Number number() {
     Number value;
@@ -82,7 +84,7 @@ class BinaryFile {
   void numbers(std::span<Number> values) {
     take(values.data(), values.size_bytes());
   }
-  /// As many as are said; Error before anything is allocated if the head has fewer.
+  /// Reads `count` numbers. Throws Error before anything is allocated if the head has fewer.
   template <typename Number>
   std::vector<Number> numbers(std::uint64_t count) {
     if (count > (head_.size() - taken_) / sizeof(Number)) refuse("head", "ends too early");
@@ -91,12 +93,13 @@ class BinaryFile {
     return values;
   }
   std::string text();
-  /// Error if there is more of it; forgets it.
+  /// Throws Error if there is more of the head; otherwise forgets it.
   void end_of_head();
 
-  /// A piece of the data, whose first byte is 0. Nothing checks what it says.
+  /// Reads a piece of the data, whose first byte is 0. Nothing checks what it says.
   std::vector<std::byte> read(std::uint64_t offset, std::uint64_t bytes) const;
 
+  /// Throws the Error for a problem at a place of this file.
   [[noreturn]] void refuse(const std::string& place, const std::string& problem) const;
 
  private:

@@ -7,7 +7,7 @@
 
 namespace semigeo::io {
 
-/// The number whose bytes, in the given order, stand at `from` (which need not be aligned).
+/// Returns the number whose bytes, in the given order, stand at `from` (which need not be aligned).
 template <typename Number>
 Number load(const char* from, std::endian order) {
   std::array<char, sizeof(Number)> bytes;

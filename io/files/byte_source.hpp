@@ -14,12 +14,12 @@ namespace semigeo::io {
 
 class GzipStream;
 
-/// A file's bytes from front to back through one fixed window; a gzip file (recognised by its first
-/// bytes; several members in a row are one stream) is decompressed on the way. Memory does not grow
-/// with the file. Damaged or cut gzip data is an `Error`. Not thread-safe.
+/// Reads a file's bytes from front to back through one fixed window. A gzip file (recognised by its
+/// first bytes; several members in a row are one stream) is decompressed on the way. Memory does
+/// not grow with the file. Damaged or cut gzip data is an `Error`. Not thread-safe.
 class ByteSource {
  public:
-  /// The most that can be looked at without consuming.
+  /// The largest number of bytes that can be looked at without consuming.
   static constexpr std::size_t kWindowBytes = std::size_t{1} << 20;
 
   explicit ByteSource(const std::filesystem::path& path);
@@ -29,24 +29,26 @@ class ByteSource {
 
   const std::filesystem::path& path() const { return file_.path(); }
   bool compressed() const { return gzip_ != nullptr; }
-  /// Bytes consumed so far, of the decompressed stream.
+  /// Returns the number of bytes consumed so far, of the decompressed stream.
   std::int64_t position() const { return window_position_ + (cursor_ - window_.get()); }
-  /// "byte N", and for gzip also of what.
+  /// Returns "byte N", and for gzip also what the byte is one of.
   std::string place(std::int64_t byte) const;
 
-  /// What has been read and not consumed; valid until the next call of another member.
+  /// Returns what has been read and not consumed. It is valid until the next call of another
+  /// member.
   std::string_view ahead() const { return {cursor_, static_cast<std::size_t>(end_ - cursor_)}; }
-  /// Reads until at least `bytes` (at most kWindowBytes) are ahead; false if the stream ends first.
+  /// Reads until at least `bytes` (at most kWindowBytes) are ahead. Returns false if the stream
+  /// ends first.
   bool fill(std::size_t bytes) {
     return static_cast<std::size_t>(end_ - cursor_) >= bytes || refill(bytes);
   }
   /// Moves past bytes that are ahead.
   void consume(std::size_t bytes) { cursor_ += bytes; }
-  /// Moves past any number of bytes; returns how many there were.
+  /// Moves past up to this number of bytes and returns how many there were.
   std::int64_t skip(std::int64_t bytes);
-  /// Bytes not yet consumed; unknown for a compressed file.
+  /// Returns the number of bytes not yet consumed, or nothing for a compressed file.
   std::optional<std::int64_t> bytes_left() const;
-  /// Reads to the end, which for gzip verifies the checksum; returns how many of the bytes were
+  /// Reads to the end, which for gzip verifies the checksum. Returns how many of the bytes were
   /// neither blanks, line ends nor zeros.
   std::int64_t drain();
 

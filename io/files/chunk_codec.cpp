@@ -21,7 +21,7 @@ constexpr std::int64_t kChunkBytes = 256 * 1024;
 constexpr int kFastest = 1;
 constexpr std::size_t kChecksumBytes = 4;
 
-// Positions in the pipeline of Compression::deflate, as bits of the filter mask.
+// Positions in the pipeline of Compression::kDeflate, as bits of the filter mask.
 constexpr std::uint32_t kSkipShuffle = 1U << 0;
 constexpr std::uint32_t kSkipDeflate = 1U << 1;
 
@@ -72,9 +72,9 @@ void gather_rows(const ArrayView& view, std::int64_t first, std::int64_t count, 
     } else {
       convert_rows<std::uint8_t, std::uint8_t>(view, first, count, out);
     }
-  } else if (view.memory_type == int32 && view.stored_type == int64) {
+  } else if (view.memory_type == kInt32 && view.stored_type == kInt64) {
     convert_rows<std::int32_t, std::int64_t>(view, first, count, out);
-  } else if (view.memory_type == float64 && view.stored_type == float32) {
+  } else if (view.memory_type == kFloat64 && view.stored_type == kFloat32) {
     convert_rows<double, float>(view, first, count, out);
   } else {
     throw std::invalid_argument("no conversion from " + std::string(name_of(view.memory_type)) +
@@ -229,7 +229,7 @@ ArrayShape shape_of(const ArrayView& view, Compression compression) {
   shape.chunk_rows =
       std::max<std::int64_t>(1, std::min(view.rows, kChunkBytes / shape.row_bytes()));
   shape.compact = view.rows > 0 && view.rows * shape.row_bytes() <= kMostCompactBytes;
-  if (shape.compact) shape.compression = Compression::none;
+  if (shape.compact) shape.compression = Compression::kNone;
   return shape;
 }
 
@@ -258,7 +258,7 @@ EncodedChunk encode_rows(const ArrayShape& shape, std::span<const std::byte> row
     padded.resize(size);
     rows = padded;
   }
-  if (shape.compression == Compression::none) {
+  if (shape.compression == Compression::kNone) {
     chunk.bytes = with_checksum(rows);
     return chunk;
   }
@@ -268,7 +268,7 @@ EncodedChunk encode_rows(const ArrayShape& shape, std::span<const std::byte> row
   shuffle(rows, element_size, scratch.get());
   const Compressor compressor(libdeflate_alloc_compressor(kFastest));
   if (!compressor) throw std::bad_alloc();
-  const bool real = shape.type == ElementType::float32 || shape.type == ElementType::float64;
+  const bool real = shape.type == ElementType::kFloat32 || shape.type == ElementType::kFloat64;
   const std::span<const std::byte> shuffled(scratch.get(), size);
   const std::size_t noise = real ? noise_in_front(compressor.get(), shuffled, element_size) : 0;
   const std::size_t packed = zlib_stream(compressor.get(), shuffled, noise, scratch.get() + size);
@@ -303,7 +303,7 @@ bool decode_chunk(const ArrayShape& shape, std::span<const std::byte> bytes,
   std::memcpy(&sum, bytes.data() + body.size(), kChecksumBytes);
   if (sum != fletcher32(body)) return false;
 
-  if (shape.compression == Compression::none || filter_mask == (kSkipShuffle | kSkipDeflate)) {
+  if (shape.compression == Compression::kNone || filter_mask == (kSkipShuffle | kSkipDeflate)) {
     if (body.size() != rows.size()) return false;
     std::memcpy(rows.data(), body.data(), rows.size());
     return true;

@@ -7,19 +7,19 @@
 
 namespace semigeo::io {
 
-/// Element types of stored arrays, all little endian. A record is an element as well: a row of
-/// named members, one after the other without gaps (a compound of HDF5).
+/// The element types of stored arrays, all little endian. A record is an element as well: it is a
+/// row of named members, one after the other without gaps (a compound of HDF5).
 enum class ElementType {
-  float32,
-  float64,
-  int32,
-  int64,
-  uint8,
-  uint16,
-  feature,
-  contour,
-  oriented_feature,
-  posting
+  kFloat32,
+  kFloat64,
+  kInt32,
+  kInt64,
+  kUint8,
+  kUint16,
+  kFeature,
+  kContour,
+  kOrientedFeature,
+  kPosting
 };
 
 /// A member of a record: one number, or a short array of `columns` of them.
@@ -29,73 +29,76 @@ struct RecordMember {
   int columns = 1;
 };
 
-/// ElementType::feature, a row of a level's features; kernels::Feature says what most members mean.
+/// The members of ElementType::kFeature, a row of a level's features. kernels::Feature says what
+/// most members mean.
 inline constexpr std::array<RecordMember, 10> kFeatureMembers = {{
-    {"vertex", ElementType::int64},
-    {"value", ElementType::float32},
-    {"prominence", ElementType::float32},
-    {"position", ElementType::float32, 3},
-    {"initial_position", ElementType::float32, 3},
-    {"normal", ElementType::float32, 3},
-    {"scale_free_gaussian", ElementType::float32},
-    {"scale_free_mean", ElementType::float32},
-    {"kind", ElementType::int32},
-    {"contour_point", ElementType::int64},
+    {"vertex", ElementType::kInt64},
+    {"value", ElementType::kFloat32},
+    {"prominence", ElementType::kFloat32},
+    {"position", ElementType::kFloat32, 3},
+    {"initial_position", ElementType::kFloat32, 3},
+    {"normal", ElementType::kFloat32, 3},
+    {"scale_free_gaussian", ElementType::kFloat32},
+    {"scale_free_mean", ElementType::kFloat32},
+    {"kind", ElementType::kInt32},
+    {"contour_point", ElementType::kInt64},
 }};
 
-/// ElementType::contour, a row of a level's contours.
+/// The members of ElementType::kContour, a row of a level's contours.
 inline constexpr std::array<RecordMember, 4> kContourMembers = {{
-    {"first", ElementType::int64},
-    {"count", ElementType::int64},
-    {"kind", ElementType::int32},
-    {"closed", ElementType::int32},
+    {"first", ElementType::kInt64},
+    {"count", ElementType::kInt64},
+    {"kind", ElementType::kInt32},
+    {"closed", ElementType::kInt32},
 }};
 
-/// ElementType::oriented_feature, a feature of a library's model: kernels::OrientedFeature.
+/// The members of ElementType::kOrientedFeature, a feature of a library's model:
+/// kernels::OrientedFeature.
 inline constexpr std::array<RecordMember, 7> kOrientedFeatureMembers = {{
-    {"position", ElementType::float32, 3},
-    {"normal", ElementType::float32, 3},
-    {"scale_free_gaussian", ElementType::float32},
-    {"scale_free_mean", ElementType::float32},
-    {"value", ElementType::float32},
-    {"code", ElementType::uint8},
-    {"level", ElementType::uint8},
+    {"position", ElementType::kFloat32, 3},
+    {"normal", ElementType::kFloat32, 3},
+    {"scale_free_gaussian", ElementType::kFloat32},
+    {"scale_free_mean", ElementType::kFloat32},
+    {"value", ElementType::kFloat32},
+    {"code", ElementType::kUint8},
+    {"level", ElementType::kUint8},
 }};
 
-/// ElementType::posting, a triplet of a library: kernels::Posting.
+/// The members of ElementType::kPosting, a triplet of a library: kernels::Posting.
 inline constexpr std::array<RecordMember, 3> kPostingMembers = {{
-    {"invariants", ElementType::uint8, 16},
-    {"model", ElementType::int32},
-    {"corners", ElementType::uint16, 3},
+    {"invariants", ElementType::kUint8, 16},
+    {"model", ElementType::kInt32},
+    {"corners", ElementType::kUint16, 3},
 }};
 
-/// Of a record; a number has none.
+/// Returns the members of a record; a number has none.
 constexpr std::span<const RecordMember> members_of(ElementType type) {
   switch (type) {
-    case ElementType::feature:
+    case ElementType::kFeature:
       return kFeatureMembers;
-    case ElementType::contour:
+    case ElementType::kContour:
       return kContourMembers;
-    case ElementType::oriented_feature:
+    case ElementType::kOrientedFeature:
       return kOrientedFeatureMembers;
-    case ElementType::posting:
+    case ElementType::kPosting:
       return kPostingMembers;
     default:
       return {};
   }
 }
 
+/// Returns the size of an element in bytes.
 constexpr std::int64_t size_of(ElementType type) {
   switch (type) {
-    case ElementType::float32:
-    case ElementType::int32:
+    case ElementType::kFloat32:
+    case ElementType::kInt32:
       return 4;
-    case ElementType::float64:
-    case ElementType::int64:
+    case ElementType::kFloat64:
+    case ElementType::kInt64:
       return 8;
-    case ElementType::uint8:
+    case ElementType::kUint8:
       return 1;
-    case ElementType::uint16:
+    case ElementType::kUint16:
       return 2;
     default:
       break;  // a record
@@ -104,36 +107,36 @@ constexpr std::int64_t size_of(ElementType type) {
   for (const RecordMember& member : members_of(type)) size += member.columns * size_of(member.type);
   return size;
 }
-static_assert(size_of(ElementType::feature) == 72);
-static_assert(size_of(ElementType::contour) == 24);
-static_assert(size_of(ElementType::oriented_feature) == 38);
-static_assert(size_of(ElementType::posting) == 26);
+static_assert(size_of(ElementType::kFeature) == 72);
+static_assert(size_of(ElementType::kContour) == 24);
+static_assert(size_of(ElementType::kOrientedFeature) == 38);
+static_assert(size_of(ElementType::kPosting) == 26);
 
-/// As messages and the content digest have it; of a record with its members.
+/// Returns the name that messages and the content digest use; that of a record lists its members.
 constexpr std::string_view name_of(ElementType type) {
   switch (type) {
-    case ElementType::float32:
+    case ElementType::kFloat32:
       return "float32";
-    case ElementType::float64:
+    case ElementType::kFloat64:
       return "float64";
-    case ElementType::int32:
+    case ElementType::kInt32:
       return "int32";
-    case ElementType::int64:
+    case ElementType::kInt64:
       return "int64";
-    case ElementType::uint8:
+    case ElementType::kUint8:
       return "uint8";
-    case ElementType::uint16:
+    case ElementType::kUint16:
       return "uint16";
-    case ElementType::feature:
+    case ElementType::kFeature:
       return "{vertex:int64,value:float32,prominence:float32,position:float32[3],"
              "initial_position:float32[3],normal:float32[3],scale_free_gaussian:float32,"
              "scale_free_mean:float32,kind:int32,contour_point:int64}";
-    case ElementType::contour:
+    case ElementType::kContour:
       return "{first:int64,count:int64,kind:int32,closed:int32}";
-    case ElementType::oriented_feature:
+    case ElementType::kOrientedFeature:
       return "{position:float32[3],normal:float32[3],scale_free_gaussian:float32,"
              "scale_free_mean:float32,value:float32,code:uint8,level:uint8}";
-    case ElementType::posting:
+    case ElementType::kPosting:
       return "{invariants:uint8[16],model:int32,corners:uint16[3]}";
   }
   return "?";

@@ -6,12 +6,12 @@
 
 namespace semigeo::io {
 
-/// What io throws: one sentence that names the file, the place in it, what was wrong and what to
-/// do.
+/// The exception of io. Its text is one sentence that names the file, the place in it, what was
+/// wrong and what to do.
 class Error : public std::runtime_error {
  public:
-  /// `place` is a line, byte, or dataset ("line 12", "byte 4096", "/levels/000/points"; may be
-  /// empty); `remedy` is what the reader of the message can do (may be empty).
+  /// `place` is a line, a byte or a dataset ("line 12", "byte 4096", "/levels/000/points"); it may
+  /// be empty. `remedy` is what the reader of the message can do; it may be empty.
   Error(std::filesystem::path file, std::string place, std::string problem,
         std::string remedy = {});
 

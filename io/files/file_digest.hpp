@@ -6,12 +6,12 @@
 
 namespace semigeo::io {
 
-/// XXH3-128 of the file's raw bytes (of the compressed ones for a .gz), as the 32 hexadecimal
-/// digits that `xxhsum -H2` prints. Reads the file once through a small buffer; an `Error` when it
-/// cannot be read.
+/// Returns the XXH3-128 of the file's raw bytes (for a .gz, of the compressed ones), as the 32
+/// hexadecimal digits that `xxhsum -H2` prints. Reads the file once through a small buffer. Throws
+/// Error if it cannot be read.
 std::string xxh3_of_file(const std::filesystem::path& path);
 
-/// XXH3-128 of a text, as 32 hexadecimal digits.
+/// Returns the XXH3-128 of a text, as 32 hexadecimal digits.
 std::string xxh3_of_text(std::string_view text);
 
 }  // namespace semigeo::io

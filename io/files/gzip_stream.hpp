@@ -18,13 +18,14 @@ class GzipStream {
  public:
   static constexpr std::string_view kMagic = "\x1f\x8b";
 
-  /// `start` holds the bytes of `file` that were read already.
+  /// Begins to decompress. `start` holds the bytes of `file` that were read already.
   GzipStream(InputFile& file, std::string_view start);
   ~GzipStream();
   GzipStream(const GzipStream&) = delete;
   GzipStream& operator=(const GzipStream&) = delete;
 
-  /// Fills `bytes` as far as one or more steps of decompression reach; 0 only at the end.
+  /// Fills `bytes` as far as one or more steps of decompression reach. Returns the number of bytes,
+  /// which is 0 only at the end.
   std::size_t read(std::span<char> bytes);
 
  private:

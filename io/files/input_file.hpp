@@ -9,20 +9,20 @@
 
 namespace semigeo::io {
 
-/// A regular file opened for reading, from front to back or anywhere. Missing files, folders,
-/// pipes, missing permission and read errors are `Error`s that say which of them it was.
+/// A regular file opened for reading, from front to back or anywhere. A missing file, a folder, a
+/// pipe, a missing permission and a read error are `Error`s that say which of them it was.
 class InputFile {
  public:
   explicit InputFile(std::filesystem::path path);
 
   const std::filesystem::path& path() const { return path_; }
-  /// Bytes in the file when it was opened.
+  /// Returns the number of bytes in the file when it was opened.
   std::int64_t size() const { return size_; }
-  /// Bytes read so far.
+  /// Returns the number of bytes read so far.
   std::int64_t position() const { return position_; }
-  /// Fills `bytes` and returns how many there were; fewer than asked only at the end of the file.
+  /// Fills `bytes` and returns how many there were: fewer than asked only at the end of the file.
   std::size_t read(std::span<char> bytes);
-  /// The same from any place on, without moving. May be called by several threads at once.
+  /// Fills `bytes` from any place on, without moving. May be called by several threads at once.
   std::size_t read_at(std::uint64_t offset, std::span<char> bytes) const;
 
  private:

@@ -25,7 +25,7 @@ class OutputFile {
 
   void text(std::string_view bytes) { add(bytes.data(), bytes.size()); }
 
-  /// As bytes, little endian.
+  /// Writes a number as bytes, little endian.
   template <typename Number>
   void number(Number value) {
     std::array<char, sizeof value> bytes;
@@ -34,7 +34,7 @@ class OutputFile {
     add(bytes.data(), bytes.size());
   }
 
-  /// As text: the shortest that reads back as the same number, in any locale.
+  /// Writes a number as text: the shortest that reads back as the same number, in any locale.
   template <typename Number>
   void decimal(Number value) {
     std::array<char, 32> digits;
@@ -42,9 +42,9 @@ class OutputFile {
     add(digits.data(), static_cast<std::size_t>(end - digits.data()));
   }
 
-  /// Gives the file its name; to be called last.
+  /// Gives the file its name. To be called last.
   void commit();
-  /// As AtomicFile::commit_unsynced.
+  /// Gives the file its name as AtomicFile::commit_unsynced does. To be called last.
   void commit_unsynced();
 
  private:
@@ -61,12 +61,12 @@ class OutputFile {
   std::vector<char> buffer_;
 };
 
-/// The beginning of every PLY that semigeo writes.
+/// The text that every PLY which semigeo writes begins with.
 inline constexpr const char* kPlyBegin =
     "ply\nformat binary_little_endian 1.0\ncomment written by semigeo\n";
 
-/// Coordinates of what is stored relative to an origin: doubles where that is not zero, which keeps
-/// map coordinates exact, else the floats as they are.
+/// Places what is stored relative to an origin: coordinates are doubles if the origin is not zero,
+/// which keeps map coordinates exact, and the floats as they are otherwise.
 class Placement {
  public:
   explicit Placement(const std::array<double, 3>& origin)

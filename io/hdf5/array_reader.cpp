@@ -59,14 +59,14 @@ std::vector<Value> read_values(const Hdf5File& file, const std::string& path, in
   const Hdf5File::Array array = open_checked(file, path, columns);
   const ElementType found = array.shape().type;
   const bool widens =
-      type == ElementType::int64 && (found == ElementType::int32 || found == ElementType::uint8);
+      type == ElementType::kInt64 && (found == ElementType::kInt32 || found == ElementType::kUint8);
   if (!widens) require_type(array, type);
   std::vector<Value> values;
   values.reserve(static_cast<std::size_t>(array.shape().rows * columns));
   if constexpr (std::is_same_v<Value, std::int64_t>)
     if (widens) {
-      found == ElementType::int32 ? append_rows<std::int32_t>(array, values)
-                                  : append_rows<std::uint8_t>(array, values);
+      found == ElementType::kInt32 ? append_rows<std::int32_t>(array, values)
+                                   : append_rows<std::uint8_t>(array, values);
       return values;
     }
   append_rows<Value>(array, values);
@@ -105,16 +105,16 @@ void for_each_chunk(const Hdf5File::Array& array, const ForEach& for_each,
 }
 
 std::vector<float> read_floats(const Hdf5File& file, const std::string& path, int columns) {
-  return read_values<float>(file, path, columns, ElementType::float32);
+  return read_values<float>(file, path, columns, ElementType::kFloat32);
 }
 
 std::vector<double> read_doubles(const Hdf5File& file, const std::string& path, int columns) {
-  return read_values<double>(file, path, columns, ElementType::float64);
+  return read_values<double>(file, path, columns, ElementType::kFloat64);
 }
 
 std::vector<std::int64_t> read_integers(const Hdf5File& file, const std::string& path,
                                         int columns) {
-  return read_values<std::int64_t>(file, path, columns, ElementType::int64);
+  return read_values<std::int64_t>(file, path, columns, ElementType::kInt64);
 }
 
 std::vector<std::byte> read_records(const Hdf5File& file, const std::string& path,

@@ -59,12 +59,12 @@ class Walk {
     visit_attributes(path);
     for (const Hdf5Link& link : file_.links(path)) {
       const std::string child = (path == "/" ? "" : path) + "/" + link.name;
-      if (link.kind == Hdf5Link::Kind::other)
+      if (link.kind == Hdf5Link::Kind::kOther)
         file_.refuse(child, "it is neither a group nor a dataset of this file");
       const auto [known, is_first] = first_path_.try_emplace(link.address, child);
       if (!is_first) {
         digest_.add_link(child, known->second);
-      } else if (link.kind == Hdf5Link::Kind::group) {
+      } else if (link.kind == Hdf5Link::Kind::kGroup) {
         visit_group(child);
       } else {
         visit_array(child);

@@ -14,36 +14,36 @@
 
 namespace semigeo::io {
 
-/// Fingerprint of everything a file says: XXH3_128 over one line of text per object, sorted, so
-/// that neither the order of writing nor HDF5's layout matters. docs/formats/dataset.md lists the
-/// lines. The attributes `digest` and `complete` of the root are left out.
+/// The fingerprint of everything that a file says: XXH3_128 over one line of text for each object,
+/// sorted, so that neither the order of writing nor HDF5's layout matters. docs/formats/dataset.md
+/// lists the lines. The attributes `digest` and `complete` of the root are left out.
 class ContentDigest {
  public:
   void add_group(const std::string& path);
-  /// `chunk_hashes`: EncodedChunk::raw_xxh3 of every chunk, in order.
+  /// Adds an array. `chunk_hashes` are EncodedChunk::raw_xxh3 of every chunk, in order.
   void add_array(const std::string& path, const ArrayShape& shape,
                  std::span<const std::uint64_t> chunk_hashes);
   void add_virtual(const std::string& path, ElementType type, std::int64_t rows, int columns,
                    std::span<const VirtualPiece> pieces);
   void add_attribute(const std::string& object, const std::string& name, const std::string& type,
                      const AttributeValue& value);
-  /// A further name of an object whose first name, in the order of paths, is `first`.
+  /// Adds a further name of an object whose first name, in the order of paths, is `first`.
   void add_link(const std::string& path, const std::string& first);
 
-  /// 32 hexadecimal digits.
+  /// Returns the digest as 32 hexadecimal digits.
   std::string hex() const;
 
  private:
   std::set<std::string> lines_;
 };
 
-/// The path of an array, the first row of a chunk, and its rows.
+/// Is given the path of an array, the first row of a chunk, and its rows.
 using SeenRows = std::function<void(const std::string&, std::int64_t, std::span<const std::byte>)>;
 
-/// The digest of what `file` holds, by reading all of it, one chunk in memory at a time, or some if
-/// `for_each` has several threads. Error when a checksum is wrong or an object is none that a
-/// dataset uses. `seen` is given each chunk of each array as it goes by: in order, or by several
-/// threads at once.
+/// Computes the digest of what `file` holds by reading all of it, with one chunk in memory at a
+/// time, or some if `for_each` has several threads. Throws Error if a checksum is wrong or an
+/// object is none that a dataset uses. `seen` is given each chunk of each array as it goes by: in
+/// order, or by several threads at once.
 std::string content_digest(const Hdf5File& file, const SeenRows& seen = {},
                            const ForEach& for_each = {});
 
@@ -54,12 +54,12 @@ class DigestedFile {
 
   void create_group(const std::string& path);
   void write_array(const std::string& path, const EncodedArray& array);
-  /// An array whose chunks come one by one. This object must outlive it and stay where it is.
+  /// An array whose chunks come one by one. The DigestedFile must outlive it and stay where it is.
   class Growing {
    public:
     const ArrayShape& shape() const { return array_.shape(); }
-    void write_chunk(const EncodedChunk& chunk);  ///< the next
-    /// To be called after the last chunk.
+    void write_chunk(const EncodedChunk& chunk);  ///< Writes the next chunk.
+    /// Ends the array. To be called after the last chunk.
     void close();
 
    private:
@@ -78,7 +78,7 @@ class DigestedFile {
   void link(const std::string& existing, const std::string& path);
 
   const ContentDigest& digest() const { return digest_; }
-  /// For what the digest leaves out.
+  /// Returns the file itself, for what the digest leaves out.
   Hdf5File& file() { return file_; }
 
  private:

@@ -50,7 +50,7 @@ void prepare_group(hid_t properties) {
 herr_t collect_link(hid_t, const char* name, const H5L_info_t* info, void* data) noexcept {
   try {
     static_cast<std::vector<Hdf5Link>*>(data)->push_back(
-        {name, Hdf5Link::Kind::other, info->type == H5L_TYPE_HARD ? info->u.address : 0});
+        {name, Hdf5Link::Kind::kOther, info->type == H5L_TYPE_HARD ? info->u.address : 0});
     return 0;
   } catch (...) {
     return -1;
@@ -197,8 +197,8 @@ std::vector<Hdf5Link> Hdf5File::links(const std::string& group) const {
     H5O_info_t info;
     checked(H5Oget_info_by_name2(place, entry.name.c_str(), &info, H5O_INFO_BASIC, H5P_DEFAULT),
             (group == "/" ? "" : group) + "/" + entry.name, "open the object");
-    if (info.type == H5O_TYPE_GROUP) entry.kind = Hdf5Link::Kind::group;
-    if (info.type == H5O_TYPE_DATASET) entry.kind = Hdf5Link::Kind::array;
+    if (info.type == H5O_TYPE_GROUP) entry.kind = Hdf5Link::Kind::kGroup;
+    if (info.type == H5O_TYPE_DATASET) entry.kind = Hdf5Link::Kind::kArray;
   }
   std::ranges::sort(result, {}, &Hdf5Link::name);
   return result;

@@ -15,30 +15,32 @@
 
 namespace semigeo::io {
 
+/// The values that attributes of our files have.
 using AttributeValue =
     std::variant<std::int64_t, double, std::string, std::vector<std::int64_t>, std::vector<double>>;
 
-/// "int64", "float64[3]", "ascii[8]" or "utf8[9]" (bytes): how an attribute is stored.
+/// Returns how an attribute is stored: "int64", "float64[3]", "ascii[8]" or "utf8[9]" (bytes).
 std::string attribute_type(const AttributeValue& value);
 
 /// A whole dataset of the same file that a virtual dataset shows as its next rows.
 struct VirtualPiece {
-  std::string source;  ///< absolute path
-  std::int64_t rows;   ///< of the virtual dataset; (F, 3) seen as one column has 3 F of them
+  std::string source;  ///< Absolute path.
+  std::int64_t rows;   ///< Rows of the virtual dataset: (F, 3) seen as one column has 3 F of them.
   friend bool operator==(const VirtualPiece&, const VirtualPiece&) = default;
 };
 
 /// An entry of a group.
 struct Hdf5Link {
-  enum class Kind { group, array, other };
+  enum class Kind { kGroup, kArray, kOther };
   std::string name;
   Kind kind;
-  std::uint64_t address;  ///< the same for every hard link to one object
+  std::uint64_t address;  ///< The same for every hard link to one object.
 };
 
+/// An attribute of an object.
 struct Hdf5Attribute {
   std::string name;
-  std::string type;  ///< as io::attribute_type has it
+  std::string type;  ///< Type as io::attribute_type names it.
   AttributeValue value;
 };
 
@@ -57,7 +59,8 @@ class Hdf5Handle {
   }
   ~Hdf5Handle() { close(); }
   std::int64_t get() const { return id_; }
-  /// Negative if HDF5 reports a failure; closing twice does nothing.
+  /// Closes the identifier. Returns a negative number if HDF5 reports a failure. Closing twice does
+  /// nothing.
   int close() { return id_ < 0 ? 0 : close_(std::exchange(id_, -1)); }
 
  private:
@@ -67,17 +70,18 @@ class Hdf5Handle {
 
 /// An HDF5 file restricted to what semigeo stores: groups, attributes of AttributeValue's types
 /// with strings of fixed length, arrays of one or two dimensions chunked by rows or compact,
-/// virtual arrays over arrays of the same file, and hard links. Anything else is an Error when met.
+/// virtual arrays over arrays of the same file, and hard links. Anything else is an Error when it
+/// is met.
 ///
 /// Every failure is an Error that names the file, the object and HDF5's innermost reason. One
-/// thread at a time per file; HDF5 itself serialises calls for different files.
+/// thread at a time may use a file; HDF5 itself serialises calls for different files.
 class Hdf5File {
  public:
-  /// Creates or overwrites. The same sequence of calls gives the same bytes. Messages name
-  /// `shown_as` if given: the final name of a file that is written under a temporary one.
+  /// Creates or overwrites a file. The same sequence of calls gives the same bytes. Messages name
+  /// `shown_as` if it is given: the final name of a file that is written under a temporary one.
   static Hdf5File create(const std::filesystem::path& file,
                          const std::filesystem::path& shown_as = {});
-  /// Read-only.
+  /// Opens a file for reading only.
   static Hdf5File open(const std::filesystem::path& file,
                        const std::filesystem::path& shown_as = {});
 
@@ -86,7 +90,7 @@ class Hdf5File {
   void create_group(const std::string& path);
   void write_array(const std::string& path, const EncodedArray& array);
   class Growing;  // io/hdf5/hdf5_array.hpp
-  /// An array whose chunks come one by one; others may be written in between.
+  /// Begins an array whose chunks come one by one; others may be written in between.
   Growing begin_array(const std::string& path, const ArrayShape& shape);
   void write_virtual(const std::string& path, ElementType type, int columns,
                      std::span<const VirtualPiece> pieces);
@@ -94,38 +98,40 @@ class Hdf5File {
                        const AttributeValue& value);
   void link(const std::string& existing, const std::string& path);
   void flush();
-  /// Flushes and closes; nothing else may be called afterwards. The destructor closes too, but
-  /// silently.
+  /// Flushes and closes the file; nothing else may be called afterwards. The destructor closes too,
+  /// but silently.
   void close();
 
   bool has(const std::string& path) const;
   bool has_attribute(const std::string& object, const std::string& name) const;
-  /// Entries of a group, by name.
+  /// Returns the entries of a group, by name.
   std::vector<Hdf5Link> links(const std::string& group) const;
   std::uint64_t address(const std::string& path) const;
-  /// All of an object's, by name. Looking at one of them again costs nothing.
+  /// Returns all attributes of an object, by name. Looking at one of them again costs nothing.
   const std::vector<Hdf5Attribute>& attributes(const std::string& object) const;
   AttributeValue read_attribute(const std::string& object, const std::string& name) const;
-  /// The same where only this type will do; Error if it has another.
+  /// Reads an attribute that must have this type. Throws Error if it has another.
   template <typename Value>
   Value read_attribute_as(const std::string& object, const std::string& name) const {
     const AttributeValue value = read_attribute(object, name);
     if (const Value* known = std::get_if<Value>(&value)) return *known;
     refuse(object, "its attribute " + name + " has the wrong type");
   }
-  /// As io::attribute_type, or "unsupported".
+  /// Returns the type as io::attribute_type names it, or "unsupported".
   std::string attribute_type(const std::string& object, const std::string& name) const;
 
   class Array;  // io/hdf5/hdf5_array.hpp
-  /// What it is, and all of a small array, is looked at once: opening it again costs nothing.
+  /// Opens an array for reading. What it is, and all of a small array, is looked at once: opening
+  /// it again costs nothing.
   Array open_array(const std::string& path) const;
   ArrayShape shape_of(const std::string& path) const { return look_at(path).shape; }
   bool is_virtual(const std::string& path) const { return look_at(path).is_virtual; }
 
-  /// A whole array by way of HDF5's own filters and virtual mappings, as little-endian rows. For
-  /// tests: slow, and believes the file about its size.
+  /// Reads a whole array through HDF5's own filters and virtual mappings, as little-endian rows.
+  /// For tests: it is slow, and believes the file about its size.
   std::vector<std::byte> read_through_library(const std::string& path) const;
 
+  /// Throws the Error for a problem at a place of this file.
   [[noreturn]] void refuse(const std::string& place, const std::string& problem) const;
 
  private:
@@ -134,7 +140,8 @@ class Hdf5File {
   [[noreturn]] void fail(const std::string& place, const std::string& action) const;
   std::int64_t checked(std::int64_t result, const std::string& place, const char* action) const;
   std::int64_t id() const;
-  /// The object, open until another one is asked for: most calls are about that of the one before.
+  /// Returns the object, open until another one is asked for: most calls are about that of the one
+  /// before.
   std::int64_t opened(const std::string& path) const;
   struct Entry {
     std::int64_t group;  // of an object, open

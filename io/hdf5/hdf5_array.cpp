@@ -15,17 +15,17 @@ constexpr unsigned kHighestDeflateLevel = 9;
 
 hid_t number_type(ElementType type) {
   switch (type) {
-    case ElementType::float32:
+    case ElementType::kFloat32:
       return H5T_IEEE_F32LE;
-    case ElementType::float64:
+    case ElementType::kFloat64:
       return H5T_IEEE_F64LE;
-    case ElementType::int32:
+    case ElementType::kInt32:
       return H5T_STD_I32LE;
-    case ElementType::int64:
+    case ElementType::kInt64:
       return H5T_STD_I64LE;
-    case ElementType::uint8:
+    case ElementType::kUint8:
       return H5T_STD_U8LE;
-    case ElementType::uint16:
+    case ElementType::kUint16:
       return H5T_STD_U16LE;
     default:
       break;  // a record
@@ -71,10 +71,10 @@ std::optional<Compression> compression_of(hid_t properties, ElementType type) {
     if (filter == H5Z_FILTER_DEFLATE && value > kHighestDeflateLevel) return std::nullopt;
     filters.push_back(filter);
   }
-  if (filters == std::vector<H5Z_filter_t>{H5Z_FILTER_FLETCHER32}) return Compression::none;
+  if (filters == std::vector<H5Z_filter_t>{H5Z_FILTER_FLETCHER32}) return Compression::kNone;
   if (filters ==
       std::vector<H5Z_filter_t>{H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE, H5Z_FILTER_FLETCHER32})
-    return Compression::deflate;
+    return Compression::kDeflate;
   return std::nullopt;
 }
 
@@ -90,8 +90,8 @@ std::int64_t Hdf5File::type_of(ElementType type) const {
 std::optional<ElementType> Hdf5File::element_type(std::int64_t type) const {
   using enum ElementType;
   const bool record = H5Tget_class(type) == H5T_COMPOUND;
-  for (const ElementType known :
-       {float32, float64, int32, int64, uint8, uint16, feature, contour, oriented_feature, posting})
+  for (const ElementType known : {kFloat32, kFloat64, kInt32, kInt64, kUint8, kUint16, kFeature,
+                                  kContour, kOrientedFeature, kPosting})
     if (members_of(known).empty() != record && H5Tequal(type, type_of(known)) > 0) return known;
   return std::nullopt;
 }
@@ -112,7 +112,7 @@ Hdf5File::Growing Hdf5File::begin_array(const std::string& path, const ArrayShap
   } else if (shape.rows > 0) {  // HDF5 has no chunks of a fixed extent of 0
     const Extent chunk = extent(shape.chunk_rows, shape.columns);
     H5Pset_chunk(properties.get(), shape.columns == 1 ? 1 : 2, chunk.data());
-    if (shape.compression == Compression::deflate) {
+    if (shape.compression == Compression::kDeflate) {
       H5Pset_shuffle(properties.get());
       H5Pset_deflate(properties.get(), 1);
     }

@@ -15,8 +15,9 @@ class Hdf5File::Growing {
  public:
   const ArrayShape& shape() const { return known_->shape; }
   const std::string& path() const { return path_; }
-  void write_chunk(const EncodedChunk& chunk);  ///< the next; all rows of a compact array
-  void close();                                 ///< after the last chunk
+  void write_chunk(
+      const EncodedChunk& chunk);  ///< Writes the next chunk, or all rows of a compact array.
+  void close();                    ///< Ends the array. To be called after the last chunk.
 
  private:
   friend class Hdf5File;
@@ -34,15 +35,15 @@ class Hdf5File::Growing {
 /// An open array of a file, which must outlive it.
 class Hdf5File::Array {
  public:
-  /// For a virtual array only type, rows and columns mean anything.
+  /// Returns the shape. For a virtual array only type, rows and columns mean anything.
   const ArrayShape& shape() const { return known_->shape; }
   const std::string& path() const { return path_; }
   const Hdf5File& file() const { return *file_; }
   bool is_virtual() const { return known_->is_virtual; }
   bool has_attributes() const;
-  /// Bytes of all its chunks in the file.
+  /// Returns the number of bytes of all its chunks in the file.
   std::int64_t stored_bytes() const;
-  /// The chunk as it lies in the file, without its hash.
+  /// Reads a chunk as it lies in the file, without its hash.
   EncodedChunk read_chunk(std::int64_t index) const;
   const std::vector<VirtualPiece>& virtual_pieces() const { return known_->pieces; }
 

@@ -27,8 +27,8 @@ Hdf5Handle string_type(std::string_view text) {
 }
 
 struct AttributeShape {
-  enum class Kind { integer, real, text, unsupported };
-  Kind kind = Kind::unsupported;
+  enum class Kind { kInteger, kReal, kText, kUnsupported };
+  Kind kind = Kind::kUnsupported;
   bool scalar = true;
   std::int64_t count = 1;  // elements, or bytes of the text
   bool ascii = true;
@@ -42,11 +42,11 @@ AttributeShape attribute_shape(hid_t attribute) {
   shape.scalar = rank == 0;
   shape.count = H5Sget_simple_extent_npoints(space.get());
   if (rank < 0 || rank > 1 || shape.count > kLargestAttribute / 8) return shape;
-  if (H5Tequal(type.get(), H5T_STD_I64LE) > 0) shape.kind = AttributeShape::Kind::integer;
-  if (H5Tequal(type.get(), H5T_IEEE_F64LE) > 0) shape.kind = AttributeShape::Kind::real;
+  if (H5Tequal(type.get(), H5T_STD_I64LE) > 0) shape.kind = AttributeShape::Kind::kInteger;
+  if (H5Tequal(type.get(), H5T_IEEE_F64LE) > 0) shape.kind = AttributeShape::Kind::kReal;
   if (H5Tget_class(type.get()) == H5T_STRING && H5Tis_variable_str(type.get()) == 0 &&
       shape.scalar) {
-    shape.kind = AttributeShape::Kind::text;
+    shape.kind = AttributeShape::Kind::kText;
     shape.count = static_cast<std::int64_t>(H5Tget_size(type.get()));
     shape.ascii = H5Tget_cset(type.get()) == H5T_CSET_ASCII;
   }
@@ -57,13 +57,13 @@ AttributeShape attribute_shape(hid_t attribute) {
 std::string text_of(const AttributeShape& shape) {
   const auto count = static_cast<std::size_t>(shape.count);
   switch (shape.kind) {
-    case AttributeShape::Kind::integer:
+    case AttributeShape::Kind::kInteger:
       return shape.scalar ? "int64" : counted("int64", count);
-    case AttributeShape::Kind::real:
+    case AttributeShape::Kind::kReal:
       return shape.scalar ? "float64" : counted("float64", count);
-    case AttributeShape::Kind::text:
+    case AttributeShape::Kind::kText:
       return counted(shape.ascii ? "ascii" : "utf8", count);
-    case AttributeShape::Kind::unsupported:
+    case AttributeShape::Kind::kUnsupported:
       break;
   }
   return "unsupported";
@@ -161,13 +161,13 @@ Hdf5Attribute Hdf5File::read(const Hdf5Handle& attribute, const std::string& obj
   };
   Hdf5Attribute result{name, text_of(shape), {}};
   switch (shape.kind) {
-    case AttributeShape::Kind::integer:
+    case AttributeShape::Kind::kInteger:
       result.value = numbers(H5T_STD_I64LE, std::int64_t{});
       return result;
-    case AttributeShape::Kind::real:
+    case AttributeShape::Kind::kReal:
       result.value = numbers(H5T_IEEE_F64LE, double{});
       return result;
-    case AttributeShape::Kind::text: {
+    case AttributeShape::Kind::kText: {
       if (shape.count > kLargestAttribute) break;
       std::string text(static_cast<std::size_t>(shape.count), '\0');
       const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose);
@@ -178,7 +178,7 @@ Hdf5Attribute Hdf5File::read(const Hdf5Handle& attribute, const std::string& obj
         result.value = std::string();
       return result;
     }
-    case AttributeShape::Kind::unsupported:
+    case AttributeShape::Kind::kUnsupported:
       break;
   }
   refuse(place, "its type is none that a dataset uses");

@@ -15,10 +15,11 @@ namespace semigeo::io {
 
 static_assert(std::is_same_v<hid_t, std::int64_t> && std::is_same_v<herr_t, int>);
 
-/// Before any other call in a thread: no error printing, no exit handler.
+/// Prepares HDF5 in this thread: it prints no errors and has no exit handler. To be called before
+/// any other call of the library.
 void prepare_library();
 
-/// Why the last call failed. Every call of the library forgets it.
+/// Returns why the last call failed. Every call of the library forgets it.
 std::string innermost_reason();
 
 using Extent = std::array<hsize_t, 2>;
@@ -27,7 +28,7 @@ inline Extent extent(std::int64_t rows, int columns) {
   return {static_cast<hsize_t>(rows), static_cast<hsize_t>(columns)};
 }
 
-/// (rows) or (rows, columns).
+/// Returns the data space (rows), or (rows, columns) if there are several columns.
 inline Hdf5Handle make_space(std::int64_t rows, int columns) {
   const Extent size = extent(rows, columns);
   return {H5Screate_simple(columns == 1 ? 1 : 2, size.data(), nullptr), H5Sclose};

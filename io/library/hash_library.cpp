@@ -109,7 +109,7 @@ HashLibrary::State::State(const std::filesystem::path& path)
     : file(open_complete(path, kLibraryFormat)),
       parameters(read_json_attribute(file, "parameters")),
       digest(file.read_attribute_as<std::string>("/", "digest")),
-      postings(open_rows(file, kPostings, ElementType::posting, 1)),
+      postings(open_rows(file, kPostings, ElementType::kPosting, 1)),
       features(open(kFeatureArray)),
       level_scales(open(kLevelScaleArray)),
       sample_points(open(kSamplePointArray)),

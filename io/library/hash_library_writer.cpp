@@ -23,7 +23,7 @@ ArrayShape chunked(ElementType type, int columns, std::int64_t rows, std::int64_
           .rows = rows,
           .columns = columns,
           .chunk_rows = std::max<std::int64_t>(1, std::min(rows, chunk_rows)),
-          .compression = Compression::none};
+          .compression = Compression::kNone};
 }
 
 void add_text(std::string& texts, const std::string& text) {
@@ -38,7 +38,7 @@ HashLibraryWriter::HashLibraryWriter(const std::filesystem::path& final_path,
       file_(begin_file(target_, header)),
       sizes_(sizes),
       postings_(file_.begin_array(
-          "/postings", chunked(ElementType::posting, 1, sizes.postings, kBlockPostings))),
+          "/postings", chunked(ElementType::kPosting, 1, sizes.postings, kBlockPostings))),
       features_(begin_rows(kFeatureArray, sizes.features)),
       level_scales_(begin_rows(kLevelScaleArray, sizes.level_scales)),
       sample_points_(begin_rows(kSamplePointArray, sizes.samples)),
@@ -98,7 +98,7 @@ void HashLibraryWriter::write_model(const PackedModel& model, std::int64_t tripl
 }
 
 void HashLibraryWriter::write_small(const std::string& path, const ArrayView& view) {
-  file_.write_array(path, encode_array(view, Compression::deflate));
+  file_.write_array(path, encode_array(view, Compression::kDeflate));
 }
 
 std::string HashLibraryWriter::finish(std::span<const std::uint64_t> cells,

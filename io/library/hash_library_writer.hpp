@@ -13,40 +13,44 @@
 
 namespace semigeo::io {
 
-/// Where a library comes from.
+/// Says where a library comes from.
 struct LibraryHeader {
-  nlohmann::json parameters = nlohmann::json::object();  ///< with which its triplets were made
-  std::string job_key;  ///< hash of everything the content depends on
+  nlohmann::json parameters =
+      nlohmann::json::object();  ///< Parameters with which its triplets were made.
+  std::string job_key;           ///< Hash of everything that the content depends on.
 };
 
-/// How much of everything it will have.
+/// Says how much of everything a library will have.
 struct LibrarySizes {
   std::int64_t postings = 0;
   std::int64_t models = 0;
-  std::int64_t features = 0;      ///< of all models
-  std::int64_t level_scales = 0;  ///< of all models
-  std::int64_t samples = 0;       ///< of all models
+  std::int64_t features = 0;      ///< Number in all models.
+  std::int64_t level_scales = 0;  ///< Number in all models.
+  std::int64_t samples = 0;       ///< Number in all models.
 };
 
 /// Writes a library (docs/formats/library.md), first its postings, block by block, then its models.
-/// Equal content gives equal bytes. Memory: a few chunks, the index and about 200 bytes a model.
-/// The file appears under its final name when it is whole and verified. Wrong use is
+/// Equal content gives equal bytes. Memory: a few chunks, the index and about 200 bytes for each
+/// model. The file appears under its final name when it is whole and verified. Wrong use is
 /// std::invalid_argument, a failure of the disk an Error. One thread at a time.
 class HashLibraryWriter {
  public:
   HashLibraryWriter(const std::filesystem::path& final_path, const LibraryHeader& header,
                     const LibrarySizes& sizes);
 
-  /// Every block but the last has posting_shape().chunk_rows postings, packed (kPostingBytes each);
-  /// encode_rows(posting_shape(), rows) makes it, on any thread.
+  /// Returns the shape of the postings. Every block but the last has posting_shape().chunk_rows
+  /// postings, packed (kPostingBytes each); encode_rows(posting_shape(), rows) makes it, on any
+  /// thread.
   const ArrayShape& posting_shape() const { return postings_.shape(); }
-  /// The next block, in the order of cell, model, corners.
+  /// Writes the next block, in the order of cell, model, corners.
   void write_block(const EncodedChunk& block);
 
-  /// The next model, after the last block; names ascend. `triplets`: how many postings it has.
+  /// Writes the next model, after the last block; names ascend. `triplets` is the number of its
+  /// postings.
   void write_model(const PackedModel& model, std::int64_t triplets);
 
-  /// `cells`: as HashLibrary::cells. Returns the content digest.
+  /// Ends the file and gives it its name. `cells` are those of HashLibrary::cells. Returns the
+  /// content digest.
   std::string finish(std::span<const std::uint64_t> cells, const ForEach& for_each = {});
 
  private:
@@ -54,7 +58,7 @@ class HashLibraryWriter {
   struct Rows {
     DigestedFile::Growing array;
     std::vector<std::byte> pending;
-    std::vector<std::int64_t> offsets = {0};  ///< where each model begins, and the end
+    std::vector<std::int64_t> offsets = {0};  ///< Where each model begins, and the end.
 
     void add(std::span<const std::byte> rows);
     void close();

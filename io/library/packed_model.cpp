@@ -16,7 +16,7 @@ namespace {
 using kernels::OrientedFeature;
 
 // A record is what the struct is in memory, without the padding at its end.
-static_assert(kOrientedFeatureBytes == size_of(ElementType::oriented_feature) &&
+static_assert(kOrientedFeatureBytes == size_of(ElementType::kOrientedFeature) &&
               offsetof(OrientedFeature, code) == 36 &&
               offsetof(OrientedFeature, level) + 1 == kOrientedFeatureBytes);
 static_assert(sizeof(Eigen::Vector3f) == kSamplePointBytes &&

@@ -21,9 +21,9 @@ struct PackedModel {
   float diagonal = 0;
   float sample_spacing = 0;
   std::vector<float> level_scales;
-  std::vector<std::byte> features;        ///< records of ElementType::oriented_feature
-  std::vector<std::byte> sample_points;   ///< float32 (samples, 3)
-  std::vector<std::byte> sample_normals;  ///< PackedNormal of each
+  std::vector<std::byte> features;        ///< Records of ElementType::kOrientedFeature.
+  std::vector<std::byte> sample_points;   ///< float32 (samples, 3).
+  std::vector<std::byte> sample_normals;  ///< One PackedNormal for each sample.
 
   std::int64_t feature_count() const;
   std::int64_t sample_count() const;
@@ -32,15 +32,16 @@ struct PackedModel {
 inline constexpr std::size_t kOrientedFeatureBytes = 38;
 inline constexpr std::size_t kSamplePointBytes = 12;
 inline constexpr std::size_t kSampleNormalBytes = 4;
-inline constexpr int kMostModelLevels = 256;  ///< a feature's level is one byte
+inline constexpr int kMostModelLevels = 256;  ///< The level of a feature is one byte.
 
+/// Packs the tables of a model, and undoes it.
 PackedModel pack_model(const kernels::RecognitionModel& model);
 kernels::RecognitionModel unpack_model(const PackedModel& model);
 
-/// What is wrong with a model ("has a feature of no kind or level"), if anything: whatever was
-/// stored, what has no problem can be recognised.
+/// Returns what is wrong with a model ("has a feature of no kind or level"), if anything. What has
+/// no problem can be recognised, whatever was stored.
 std::optional<std::string> problem_of(const PackedModel& model);
-/// The same of records of features alone.
+/// Returns what is wrong with records of features alone, or with floats alone.
 std::optional<std::string> problem_of_features(std::span<const std::byte> records,
                                                std::size_t levels);
 std::optional<std::string> problem_of_floats(std::span<const std::byte> floats);

@@ -7,7 +7,7 @@
 
 namespace semigeo::io {
 
-/// The values of packed rows of `stride` bytes, each the beginning of a Value in memory.
+/// Returns the values of packed rows of `stride` bytes, each the beginning of a Value in memory.
 template <typename Value>
 std::vector<Value> unpacked(std::span<const std::byte> rows, std::size_t stride = sizeof(Value)) {
   std::vector<Value> values(rows.size() / stride);
@@ -16,7 +16,7 @@ std::vector<Value> unpacked(std::span<const std::byte> rows, std::size_t stride 
   return values;
 }
 
-/// The other way round.
+/// Returns the packed rows of values: the first `stride` bytes of each.
 template <typename Value>
 std::vector<std::byte> packed(std::span<const Value> values, std::size_t stride = sizeof(Value)) {
   std::vector<std::byte> rows(values.size() * stride);

@@ -12,27 +12,27 @@
 
 namespace semigeo::io {
 
-/// What a partition says of itself.
+/// What a partition says about itself.
 struct PartitionHeader {
   std::string job_key;
   ShapeRange shapes;
-  std::int64_t models = 0;      ///< of the library
-  std::uint64_t runs_hash = 0;  ///< runs_hash of the runs that it was made of
+  std::int64_t models = 0;      ///< Number of models of the library.
+  std::uint64_t runs_hash = 0;  ///< runs_hash of the runs that it was made of.
 };
 
-/// XXH3_64 of TripletRun::content_hash of all runs, in the order of models.
+/// Returns the XXH3_64 of TripletRun::content_hash of all runs, in the order of models.
 std::uint64_t runs_hash(std::span<const std::uint64_t> content_hashes);
 
-/// Writes the postings of a range of shapes (docs/formats/library.md), piece by piece; the file
+/// Writes the postings of a range of shapes (docs/formats/library.md), piece by piece. The file
 /// appears under its name when it is whole, unless the power is cut meanwhile: what is removed as
 /// soon as the library is made is not forced to the disk. Memory: two blocks.
 class PostingPartitionWriter {
  public:
   PostingPartitionWriter(const std::filesystem::path& path, PartitionHeader header);
-  /// The next postings, packed as ElementType::posting, in the order of cell, model, corners.
+  /// Adds the next postings, packed as ElementType::kPosting, in the order of cell, model, corners.
   void add(std::span<const std::byte> rows);
-  /// How many postings each cell of the range has. std::invalid_argument if these are not as many
-  /// as were added.
+  /// Ends the file. `cell_counts` says how many postings each cell of the range has. Throws
+  /// std::invalid_argument if these are not as many as were added.
   void finish(std::span<const std::uint32_t> cell_counts);
 
  private:
@@ -53,11 +53,11 @@ class PostingPartition {
 
   const std::filesystem::path& path() const { return file_.path(); }
   const PartitionHeader& header() const { return header_; }
-  /// Of each cell of the range.
+  /// Returns the number of postings of each cell of the range.
   std::span<const std::uint32_t> cell_counts() const { return cell_counts_; }
   std::int64_t postings() const { return postings_; }
   std::int64_t blocks() const { return static_cast<std::int64_t>(block_hashes_.size()); }
-  /// Packed postings, at most 65,536.
+  /// Reads a block of packed postings, at most 65,536.
   std::vector<std::byte> read_block(std::int64_t block) const;
 
  private:
@@ -68,8 +68,8 @@ class PostingPartition {
   std::vector<std::uint64_t> block_hashes_;
 };
 
-/// The key of the job that made a partition; Error if the file is not a whole partition of this
-/// version, or damaged in any place: it reads all of it.
+/// Returns the key of the job that made a partition. Reads all of the file, and throws Error if it
+/// is not a whole partition of this version, or damaged in any place.
 std::string posting_partition_key(const std::filesystem::path& path);
 
 }  // namespace semigeo::io

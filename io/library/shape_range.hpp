@@ -4,7 +4,8 @@
 
 namespace semigeo::io {
 
-/// Shapes first, ..., end - 1: cells first * kCodeTriples, ..., end * kCodeTriples - 1.
+/// The shapes first, ..., end - 1, which have the cells first * kCodeTriples, ..., end *
+/// kCodeTriples - 1.
 struct ShapeRange {
   int first = 0;
   int end = kernels::kShapes;

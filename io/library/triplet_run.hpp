@@ -16,13 +16,13 @@ namespace semigeo::io {
 
 /// Writes a model and its triplets as one file (docs/formats/library.md), whole or not at all,
 /// unless the power is cut meanwhile: it is not forced to the disk, as there are thousands. Equal
-/// content, equal bytes. std::invalid_argument if the model is unsound or the triplets are not
-/// sorted by cell, then corners, none twice, or refer to features that it does not have.
+/// content gives equal bytes. Throws std::invalid_argument if the model is unsound or the triplets
+/// are not sorted by cell, then corners, none twice, or refer to features that it does not have.
 void write_triplet_run(const std::filesystem::path& path, const std::string& job_key,
                        const kernels::RecognitionModel& model,
                        std::span<const kernels::Triplet> triplets);
 
-/// Reads a run. Opening reads some 5 kB; the triplets of each shape and the model are checked
+/// Reads a run. Opening it reads some 5 kB; the triplets of each shape and the model are checked
 /// against checksums of their own when they are read. Every failure is an Error that names the file
 /// and what is wrong with it. Thread-safe.
 class TripletRun {
@@ -31,8 +31,9 @@ class TripletRun {
 
   const std::filesystem::path& path() const { return file_.path(); }
   const std::string& job_key() const { return job_key_; }
-  const std::string& name() const { return model_.name; }  ///< of the model
-  /// XXH3_64 of the head, which has the checksums of all else: equal hash, equal content.
+  const std::string& name() const { return model_.name; }  ///< Name of the model.
+  /// Returns the XXH3_64 of the head, which has the checksums of all else: equal hashes mean equal
+  /// content.
   std::uint64_t content_hash() const { return file_.head_hash(); }
   std::int64_t features() const { return features_; }
   std::int64_t samples() const { return samples_; }
@@ -41,7 +42,7 @@ class TripletRun {
     return offsets_[shapes.end] - offsets_[shapes.first];
   }
 
-  /// Sorted by cell, then corners.
+  /// Reads the triplets of some shapes, sorted by cell, then corners.
   std::vector<kernels::Triplet> read_triplets(const ShapeRange& shapes = {}) const;
   kernels::RecognitionModel read_model() const { return unpack_model(read_packed_model()); }
   PackedModel read_packed_model() const;
@@ -60,8 +61,8 @@ class TripletRun {
   std::uint64_t model_hash_ = 0;
 };
 
-/// The key of the job that made a run; Error if the file is not a whole run of this version, or
-/// damaged in any place: it reads all of it.
+/// Returns the key of the job that made a run. Reads all of the file, and throws Error if it is not
+/// a whole run of this version, or damaged in any place.
 std::string triplet_run_key(const std::filesystem::path& path);
 
 }  // namespace semigeo::io

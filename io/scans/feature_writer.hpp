@@ -8,7 +8,7 @@
 
 namespace semigeo::io {
 
-/// Features of one kind in somebody else's memory.
+/// A view of features of one kind in somebody else's memory.
 struct FeaturesView {
   kernels::FeatureKind kind = kernels::FeatureKind::gaussian;
   std::span<const kernels::Feature> features;
@@ -19,7 +19,7 @@ struct FeaturesView {
 // floats. A file appears whole or not at all. Error when the disk fails, or when a PLY would need
 // more than 32 bits to count something.
 
-/// One table after the other, a vertex or line for each feature: x y z, nx ny nz, value,
+/// Writes one table after the other, a vertex or line for each feature: x y z, nx ny nz, value,
 /// prominence, scale_free_gaussian, scale_free_mean, initial_x initial_y initial_z, kind (PLY: the
 /// number of the FeatureKind, CSV: its name), vertex.
 void write_features_ply(const std::filesystem::path& path, std::span<const FeaturesView> tables,
@@ -27,9 +27,9 @@ void write_features_ply(const std::filesystem::path& path, std::span<const Featu
 void write_features_csv(const std::filesystem::path& path, std::span<const FeaturesView> tables,
                         const std::array<double, 3>& origin);
 
-/// A vertex or line for each point: x y z, torsion, contour (from 0 on), closed (1 or 0). The PLY
-/// has an edge (vertex1 vertex2) from each point to the next; of closed contours also from the last
-/// to the first. std::invalid_argument when the arrays do not fit each other.
+/// Writes a vertex or line for each point: x y z, torsion, contour (from 0 on), closed (1 or 0).
+/// The PLY has an edge (vertex1 vertex2) from each point to the next, and on closed contours also
+/// from the last to the first. Throws std::invalid_argument if the arrays do not fit each other.
 void write_contours_ply(const std::filesystem::path& path, const kernels::SampledContours& contours,
                         const std::array<double, 3>& origin);
 void write_contours_csv(const std::filesystem::path& path, const kernels::SampledContours& contours,

@@ -38,7 +38,7 @@ class ObjBody {
   }
 
  private:
-  Place place() const { return {Place::Unit::line, scanner_.line()}; }
+  Place place() const { return {Place::Unit::kLine, scanner_.line()}; }
 
   void read_vertex() {
     const Place place = this->place();

@@ -84,7 +84,7 @@ class OffText {
   }
 
  private:
-  Place place() const { return {Place::Unit::line, scanner_.line()}; }
+  Place place() const { return {Place::Unit::kLine, scanner_.line()}; }
 
   Counts read_counts() {
     scanner_.skip_to_content();
@@ -139,7 +139,7 @@ class OffBinary {
   }
 
  private:
-  Place place() const { return {Place::Unit::byte, source_.position()}; }
+  Place place() const { return {Place::Unit::kByte, source_.position()}; }
 
   void begin(std::string_view what, std::int64_t promised) {
     what_ = what;

@@ -7,14 +7,15 @@
 
 namespace semigeo::io {
 
-/// Where in a file a record begins: cheap to pass along, put into words only when it is needed.
+/// The place in a file where a record begins: cheap to pass along, put into words only when it is
+/// needed.
 struct Place {
-  enum class Unit { line, byte };
-  Unit unit = Unit::line;
+  enum class Unit { kLine, kByte };
+  Unit unit = Unit::kLine;
   std::int64_t number = 0;
 
   std::string text(const ByteSource& source) const {
-    return unit == Unit::line ? "line " + std::to_string(number) : source.place(number);
+    return unit == Unit::kLine ? "line " + std::to_string(number) : source.place(number);
   }
 };
 

@@ -13,14 +13,14 @@
 
 namespace semigeo::io {
 
-/// What messages call the records of an element.
+/// Returns what messages call the records of an element.
 inline std::string plural(const PlyElement& element) {
   if (element.name == "vertex") return "vertices";
   if (element.name == "face") return "faces";
   return "records of element '" + element.name + "'";
 }
 
-/// The values of an ascii PLY, record by record: one line each.
+/// Reads the values of an ascii PLY, record by record: one line each.
 class PlyAsciiDecoder {
  public:
   PlyAsciiDecoder(ByteSource& source, const PlyHeader& header, const ScanBuilder& builder)
@@ -35,7 +35,7 @@ class PlyAsciiDecoder {
       scanner_.fail("the line has more values than the header declares",
                     "correct the line or export the scan again");
   }
-  Place place() const { return {Place::Unit::line, scanner_.line()}; }
+  Place place() const { return {Place::Unit::kLine, scanner_.line()}; }
 
   double scalar(const PlyProperty& property) { return scanner_.number(property.name); }
   std::int64_t length(const PlyProperty& property) {
@@ -60,13 +60,13 @@ class PlyAsciiDecoder {
   const ScanBuilder& builder_;
 };
 
-/// The values of a binary PLY of either byte order.
+/// Reads the values of a binary PLY of either byte order.
 class PlyBinaryDecoder {
  public:
   PlyBinaryDecoder(ByteSource& source, const PlyHeader& header, const ScanBuilder& builder)
       : source_(source),
         builder_(builder),
-        order_(header.encoding == PlyHeader::Encoding::big_endian ? std::endian::big
+        order_(header.encoding == PlyHeader::Encoding::kBigEndian ? std::endian::big
                                                                   : std::endian::little) {}
 
   void begin_record(const PlyElement& element, std::int64_t index) {
@@ -75,7 +75,7 @@ class PlyBinaryDecoder {
     start_ = source_.position();
   }
   void end_record() {}
-  Place place() const { return {Place::Unit::byte, start_}; }
+  Place place() const { return {Place::Unit::kByte, start_}; }
 
   double scalar(const PlyProperty& property) { return next<double>(property.type); }
   std::int64_t length(const PlyProperty& property) {
@@ -101,21 +101,21 @@ class PlyBinaryDecoder {
     const char* const from = source_.ahead().data();
     source_.consume(size);
     switch (type) {
-      case PlyType::int8:
+      case PlyType::kInt8:
         return load<std::int8_t>(from, order_);
-      case PlyType::uint8:
+      case PlyType::kUint8:
         return load<std::uint8_t>(from, order_);
-      case PlyType::int16:
+      case PlyType::kInt16:
         return load<std::int16_t>(from, order_);
-      case PlyType::uint16:
+      case PlyType::kUint16:
         return load<std::uint16_t>(from, order_);
-      case PlyType::int32:
+      case PlyType::kInt32:
         return load<std::int32_t>(from, order_);
-      case PlyType::uint32:
+      case PlyType::kUint32:
         return load<std::uint32_t>(from, order_);
-      case PlyType::float32:
+      case PlyType::kFloat32:
         return static_cast<Number>(load<float>(from, order_));
-      case PlyType::float64:
+      case PlyType::kFloat64:
         return static_cast<Number>(load<double>(from, order_));
     }
     return 0;
@@ -123,7 +123,7 @@ class PlyBinaryDecoder {
   [[noreturn]] void fail_end() {
     source_.skip(ByteSource::kWindowBytes);  // to the end: the rest of a number
     builder_.fail_promise(plural(*element_), element_->count, index_,
-                          {Place::Unit::byte, source_.position()});
+                          {Place::Unit::kByte, source_.position()});
   }
 
   ByteSource& source_;

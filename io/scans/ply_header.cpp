@@ -14,22 +14,22 @@ constexpr std::int64_t kMaxHeaderLines = 10'000;
 constexpr const char* kBadHeader = "correct the header or export the scan again";
 
 constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypeNames = {{
-    {"char", PlyType::int8},
-    {"int8", PlyType::int8},
-    {"uchar", PlyType::uint8},
-    {"uint8", PlyType::uint8},
-    {"short", PlyType::int16},
-    {"int16", PlyType::int16},
-    {"ushort", PlyType::uint16},
-    {"uint16", PlyType::uint16},
-    {"int", PlyType::int32},
-    {"int32", PlyType::int32},
-    {"uint", PlyType::uint32},
-    {"uint32", PlyType::uint32},
-    {"float", PlyType::float32},
-    {"float32", PlyType::float32},
-    {"double", PlyType::float64},
-    {"float64", PlyType::float64},
+    {"char", PlyType::kInt8},
+    {"int8", PlyType::kInt8},
+    {"uchar", PlyType::kUint8},
+    {"uint8", PlyType::kUint8},
+    {"short", PlyType::kInt16},
+    {"int16", PlyType::kInt16},
+    {"ushort", PlyType::kUint16},
+    {"uint16", PlyType::kUint16},
+    {"int", PlyType::kInt32},
+    {"int32", PlyType::kInt32},
+    {"uint", PlyType::kUint32},
+    {"uint32", PlyType::kUint32},
+    {"float", PlyType::kFloat32},
+    {"float32", PlyType::kFloat32},
+    {"double", PlyType::kFloat64},
+    {"float64", PlyType::kFloat64},
 }};
 
 PlyType read_type(TextScanner& scanner) {
@@ -49,9 +49,9 @@ PlyHeader::Encoding read_encoding(TextScanner& scanner) {
   const std::string name(scanner.word());
   const std::string version(scanner.word());
   if (version != "1.0") scanner.fail("unsupported PLY version '" + version.substr(0, 40) + "'");
-  if (name == "ascii") return PlyHeader::Encoding::ascii;
-  if (name == "binary_little_endian") return PlyHeader::Encoding::little_endian;
-  if (name == "binary_big_endian") return PlyHeader::Encoding::big_endian;
+  if (name == "ascii") return PlyHeader::Encoding::kAscii;
+  if (name == "binary_little_endian") return PlyHeader::Encoding::kLittleEndian;
+  if (name == "binary_big_endian") return PlyHeader::Encoding::kBigEndian;
   scanner.fail("unknown PLY encoding '" + name.substr(0, 40) + "'",
                "export it as ascii, binary_little_endian or binary_big_endian");
 }
@@ -102,17 +102,17 @@ bool read_line(TextScanner& scanner, PlyHeader& header, bool& encoding_known) {
 
 int ply_type_size(PlyType type) {
   switch (type) {
-    case PlyType::int8:
-    case PlyType::uint8:
+    case PlyType::kInt8:
+    case PlyType::kUint8:
       return 1;
-    case PlyType::int16:
-    case PlyType::uint16:
+    case PlyType::kInt16:
+    case PlyType::kUint16:
       return 2;
-    case PlyType::int32:
-    case PlyType::uint32:
-    case PlyType::float32:
+    case PlyType::kInt32:
+    case PlyType::kUint32:
+    case PlyType::kFloat32:
       return 4;
-    case PlyType::float64:
+    case PlyType::kFloat64:
       return 8;
   }
   return 0;

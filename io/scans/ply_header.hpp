@@ -9,36 +9,41 @@
 
 namespace semigeo::io {
 
-enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+/// The types of numbers in a PLY.
+enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
 
+/// Returns the size of a number in bytes.
 int ply_type_size(PlyType type);
 inline bool is_integer(PlyType type) {
-  return type < PlyType::float32;
+  return type < PlyType::kFloat32;
 }
 
+/// A property of the records of an element: a number, or a list of numbers.
 struct PlyProperty {
   std::string name;
-  PlyType type = PlyType::float32;      ///< of the value, or of a list's items
-  std::optional<PlyType> count_type{};  ///< of a list's length; none: not a list
+  PlyType type = PlyType::kFloat32;     ///< Type of the value, or of a list's items.
+  std::optional<PlyType> count_type{};  ///< Type of a list's length; empty if it is not a list.
 };
 
 /// One table of the file: `count` records of the same properties.
 struct PlyElement {
   std::string name;
   std::int64_t count = 0;
-  std::int64_t line = 0;  ///< where the header declares it
+  std::int64_t line = 0;  ///< Line of the header that declares it.
   std::vector<PlyProperty> properties;
 
-  /// Bytes that a record has at least: exactly its size in binary files if it holds no list.
+  /// Returns the number of bytes that a record has at least: exactly its size in binary files if it
+  /// holds no list.
   std::int64_t least_bytes(bool ascii) const;
   bool has_lists() const;
 };
 
+/// What the header of a PLY says.
 struct PlyHeader {
-  enum class Encoding { ascii, little_endian, big_endian };
-  Encoding encoding = Encoding::ascii;
+  enum class Encoding { kAscii, kLittleEndian, kBigEndian };
+  Encoding encoding = Encoding::kAscii;
   std::vector<PlyElement> elements;
-  std::int64_t lines = 0;  ///< of the header
+  std::int64_t lines = 0;  ///< Number of lines of the header.
 };
 
 /// Reads the header and leaves the source behind its last line's end.

@@ -15,7 +15,7 @@ namespace {
 constexpr const char* kBadHeader = "correct the header or export the scan again";
 
 Place declaration(const PlyElement& element) {
-  return {Place::Unit::line, element.line};
+  return {Place::Unit::kLine, element.line};
 }
 
 /// For each property of `vertex` the axis it is the coordinate of, or -1.
@@ -161,7 +161,7 @@ class PlyBody {
 /// Tells the builder what the header promises; it must know before the first element is read,
 /// because faces may come before vertices.
 void announce(const PlyHeader& header, ScanBuilder& builder) {
-  const bool ascii = header.encoding == PlyHeader::Encoding::ascii;
+  const bool ascii = header.encoding == PlyHeader::Encoding::kAscii;
   bool has_vertices = false;
   for (const PlyElement& element : header.elements) {
     const std::int64_t bytes = std::max<std::int64_t>(element.least_bytes(ascii), 1);
@@ -176,7 +176,7 @@ void announce(const PlyHeader& header, ScanBuilder& builder) {
     }
   }
   if (!has_vertices)
-    builder.fail({Place::Unit::line, header.lines}, "the header declares no element vertex",
+    builder.fail({Place::Unit::kLine, header.lines}, "the header declares no element vertex",
                  kBadHeader);
 }
 
@@ -186,12 +186,12 @@ Scan read_ply(ByteSource& source, const ScanLimits& limits) {
   const PlyHeader header = read_ply_header(source);
   ScanBuilder builder(source, limits);
   announce(header, builder);
-  if (header.encoding == PlyHeader::Encoding::ascii) {
+  if (header.encoding == PlyHeader::Encoding::kAscii) {
     PlyBody<PlyAsciiDecoder>(source, header, builder).read();
     return builder.finish("PLY ascii");
   }
   PlyBody<PlyBinaryDecoder>(source, header, builder).read();
-  return builder.finish(header.encoding == PlyHeader::Encoding::big_endian
+  return builder.finish(header.encoding == PlyHeader::Encoding::kBigEndian
                             ? "PLY binary big endian"
                             : "PLY binary little endian");
 }

@@ -15,23 +15,23 @@
 namespace semigeo::io {
 
 /// Collects what a reader finds into a `Scan`: checks every coordinate and index, cuts polygons
-/// into triangles as soon as their corners are known, and enforces the limits. All its errors
-/// name the source and the place that was passed in.
+/// into triangles as soon as their corners are known, and enforces the limits. All its errors name
+/// the source and the place that was passed in.
 class ScanBuilder {
  public:
-  /// Corners that one face may have.
+  /// The largest number of corners that a face may have.
   static constexpr std::int64_t kMaxCorners = 65'535;
 
   ScanBuilder(const ByteSource& source, const ScanLimits& limits);
 
-  /// What counts in messages as the first vertex: 1 for OBJ, else 0.
+  /// Sets what counts in messages as the first vertex: 1 for OBJ, otherwise 0.
   void set_index_base(std::int64_t base) { index_base_ = base; }
-  /// The header promises so many vertices, each at least `bytes_each` long. They are the range of
-  /// valid indices from now on, and memory is reserved if the file can hold them.
+  /// Takes the promise of a header: this number of vertices, each at least `bytes_each` long. They
+  /// are the range of valid indices from now on, and memory is reserved if the file can hold them.
   void promise_points(std::int64_t count, std::int64_t bytes_each, Place place);
-  /// The same for faces.
+  /// Takes the promise of a header about faces.
   void promise_faces(std::int64_t count, std::int64_t bytes_each, Place place);
-  /// The error for a promise that the file does not keep: `found` of `promised` `what`.
+  /// Throws the Error for a promise that the file does not keep: `found` of `promised` `what`.
   [[noreturn]] void fail_promise(std::string_view what, std::int64_t promised, std::int64_t found,
                                  Place end) const;
   [[noreturn]] void fail(Place place, const std::string& problem,
@@ -47,12 +47,12 @@ class ScanBuilder {
     scan_.mesh.points.emplace_back(x, y, z);
   }
 
-  /// Must be asked before a face's corners are collected.
+  /// Refuses a face of too many corners. To be called before its corners are collected.
   void check_corner_count(std::int64_t count, Place place) const {
     if (count > kMaxCorners) fail_corner_count(place);
   }
-  /// A face of up to kMaxCorners corners, zero-based. Corners may come later in the file, unless
-  /// promise_points was called.
+  /// Adds a face of up to kMaxCorners corners, zero-based. Corners may come later in the file,
+  /// unless promise_points was called.
   void add_face(std::span<const std::int64_t> corners, Place place);
 
   /// Does what had to wait for the last vertex and returns the scan.

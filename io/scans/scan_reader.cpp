@@ -18,10 +18,10 @@ struct FormatEntry {
   Scan (*read)(ByteSource&, const ScanLimits&);
 };
 
-constexpr std::array<FormatEntry, 4> kFormats = {{{".ply", ScanFormat::ply, read_ply},
-                                                  {".obj", ScanFormat::obj, read_obj},
-                                                  {".off", ScanFormat::off, read_off},
-                                                  {".stl", ScanFormat::stl, read_stl}}};
+constexpr std::array<FormatEntry, 4> kFormats = {{{".ply", ScanFormat::kPly, read_ply},
+                                                  {".obj", ScanFormat::kObj, read_obj},
+                                                  {".off", ScanFormat::kOff, read_off},
+                                                  {".stl", ScanFormat::kStl, read_stl}}};
 
 std::string lower_case_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();

@@ -9,25 +9,28 @@
 
 namespace semigeo::io {
 
-enum class ScanFormat { ply, obj, off, stl };
+/// The formats of scans.
+enum class ScanFormat { kPly, kObj, kOff, kStl };
 
-/// The format that a file's name promises: its extension in any case, before a last ".gz" if there
-/// is one. Nothing for other names; the file is not looked at.
+/// Returns the format that a file's name promises: its extension in any case, before a last ".gz"
+/// if there is one. Returns nothing for other names. The file is not looked at.
 std::optional<ScanFormat> scan_format(const std::filesystem::path& path);
 
-/// What a scan may hold before it is refused.
+/// Limits what a scan may hold before it is refused.
 struct ScanLimits {
-  std::int64_t max_vertices = 200'000'000;   ///< indices are 32 bits wide, so never above 2^31 - 2
-  std::int64_t max_triangles = 400'000'000;  ///< after cutting polygons into triangles
-  double max_coordinate = 1e30;              ///< keeps areas and volumes within a double's range
+  std::int64_t max_vertices = 200'000'000;   ///< Indices are 32 bits wide, so never above 2^31 - 2.
+  std::int64_t max_triangles = 400'000'000;  ///< Counted after cutting polygons into triangles.
+  double max_coordinate = 1e30;              ///< Keeps areas and volumes within a double's range.
 };
 
+/// What a scan file holds.
 struct Scan {
-  kernels::TriangleMesh mesh;  ///< as the file lists it; STL: three points of its own per triangle
+  kernels::TriangleMesh mesh;  ///< As the file lists it. An STL has three points for each triangle.
   std::string format;          ///< "PLY binary little endian", "OBJ", "STL ascii, gzip", ...
-  std::int64_t polygons_triangulated = 0;  ///< faces with more than three corners
-  std::int64_t bytes_after_end = 0;        ///< not blank, behind all that the header promises
-  std::int64_t faces_skipped = 0;          ///< faces with one or two corners, or none
+  std::int64_t polygons_triangulated = 0;  ///< Faces with more than three corners.
+  std::int64_t bytes_after_end =
+      0;  ///< Bytes that are not blank, behind all that the header promises.
+  std::int64_t faces_skipped = 0;  ///< Faces with one or two corners, or none.
 };
 
 /// Reads a surface from PLY, OBJ, OFF or STL, each plain or gzip compressed. Everything in the file

@@ -111,7 +111,7 @@ class StlText {
     ++corners_;
   }
 
-  Place place() const { return {Place::Unit::line, scanner_.line()}; }
+  Place place() const { return {Place::Unit::kLine, scanner_.line()}; }
 
   void expect(bool condition) const {
     if (condition) return;
@@ -129,7 +129,7 @@ class StlText {
 };
 
 void read_binary(ByteSource& source, ScanBuilder& builder) {
-  const Place count_place{Place::Unit::byte, kHeaderBytes};
+  const Place count_place{Place::Unit::kByte, kHeaderBytes};
   if (!source.fill(kPreambleBytes))
     throw Error(source.path(), "",
                 "this is no STL file: it is neither text that begins with 'solid' nor long enough "
@@ -141,15 +141,15 @@ void read_binary(ByteSource& source, ScanBuilder& builder) {
   const std::int64_t left = source.bytes_left().value_or(kRecordBytes * count);
   if (left < kRecordBytes * count)
     builder.fail_promise("triangles", count, left / kRecordBytes,
-                         {Place::Unit::byte, source.position() + left});
+                         {Place::Unit::kByte, source.position() + left});
   builder.promise_faces(count, kRecordBytes, count_place);
   builder.promise_points(3 * count, kRecordBytes / 3, count_place);
   for (std::int64_t i = 0; i < count; ++i) {
     if (!source.fill(kRecordBytes)) {
       source.skip(kRecordBytes);
-      builder.fail_promise("triangles", count, i, {Place::Unit::byte, source.position()});
+      builder.fail_promise("triangles", count, i, {Place::Unit::kByte, source.position()});
     }
-    const Place place{Place::Unit::byte, source.position()};
+    const Place place{Place::Unit::kByte, source.position()};
     const char* const corners = source.ahead().data() + 12;  // behind the normal
     std::array<float, 9> xyz;
     for (int k = 0; k < 9; ++k) xyz[k] = load<float>(corners + 4 * k, std::endian::little);

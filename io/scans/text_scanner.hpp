@@ -8,17 +8,18 @@
 
 namespace semigeo::io {
 
-/// What a text format adds to words separated by blanks.
+/// Says what a text format adds to words separated by blanks.
 struct TextSyntax {
-  bool hash_comments = false;        ///< '#' starts a comment that ends with the line
-  bool backslash_continues = false;  ///< '\' before the end of a line joins the next one to it
+  bool hash_comments = false;        ///< '#' starts a comment that ends with the line.
+  bool backslash_continues = false;  ///< '\' before the end of a line joins the next one to it.
 };
 
-/// Words and numbers of a text, line by line; lines may have any length and end in LF, CR LF or
-/// CR, the last one in nothing. A byte-order mark of UTF-8 is skipped. Errors name the line.
+/// Reads words and numbers of a text, line by line. Lines may have any length and end in LF, CR LF
+/// or CR, the last one in nothing. A byte-order mark of UTF-8 is skipped. Errors name the line.
 class TextScanner {
  public:
-  /// Longer words are an `Error` (a word must fit the source's window).
+  /// The largest length of a word: a longer one is an `Error`, because a word must fit the source's
+  /// window.
   static constexpr std::size_t kMaxWord = 4096;
 
   /// Reads from where `source` stands; `source` must not be moved meanwhile except by `release`.
@@ -29,24 +30,25 @@ class TextScanner {
   TextScanner(const TextScanner&) = delete;
   TextScanner& operator=(const TextScanner&) = delete;
 
-  /// Number of the current line, from 1.
+  /// Returns the number of the current line, from 1.
   std::int64_t line() const { return line_; }
-  /// Skips blanks; true if the rest of the line holds nothing (or a comment).
+  /// Skips blanks. Returns whether the rest of the line holds nothing (or a comment).
   bool at_line_end();
-  /// Leaves the current line; false if the text ends with it.
+  /// Leaves the current line. Returns false if the text ends with it.
   bool next_line();
-  /// Skips empty lines until something is ahead; false if the text ends first.
+  /// Skips empty lines until something is ahead. Returns false if the text ends first.
   bool skip_to_content();
-  /// The next word of the line, which stays ahead; empty at the end of the line. Valid until the
-  /// next call.
+  /// Returns the next word of the line, which stays ahead; it is empty at the end of the line. It
+  /// is valid until the next call.
   std::string_view peek();
-  /// The next word of the line; empty at its end. Valid until the next call.
+  /// Takes the next word of the line; it is empty at the end of the line. It is valid until the
+  /// next call.
   std::string_view word();
-  /// The next word of the line as a number. `what` names it in the error: "an x coordinate".
+  /// Takes the next word of the line as a number. `what` names it in the error: "an x coordinate".
   double number(std::string_view what);
-  /// The same for a whole number.
+  /// Takes the next word of the line as a whole number.
   std::int64_t integer(std::string_view what);
-  /// The error of the current line.
+  /// Throws the Error of the current line.
   [[noreturn]] void fail(const std::string& problem, const std::string& remedy = {}) const;
   /// Moves the source to where the scanner stands.
   void release();

@@ -19,13 +19,13 @@ bool has(std::string_view begin, std::string_view word) {
 
 std::string format_of(io::ScanFormat format, std::string_view begin) {
   switch (format) {
-    case io::ScanFormat::ply:
+    case io::ScanFormat::kPly:
       return has(begin, "format ascii") ? "PLY ascii" : "PLY binary";
-    case io::ScanFormat::obj:
+    case io::ScanFormat::kObj:
       return "OBJ";
-    case io::ScanFormat::off:
+    case io::ScanFormat::kOff:
       return has(begin.substr(0, begin.find('\n')), "BINARY") ? "OFF binary" : "OFF";
-    case io::ScanFormat::stl:
+    case io::ScanFormat::kStl:
       break;
   }
   // The header of a binary file may begin with the same word, but its numbers hold zeros.

@@ -57,7 +57,7 @@ io::EncodedConnectivity encode_connectivity(const LevelConnectivity& connectivit
   io::EncodedConnectivity encoded;
   encoder.add(io::array_of(std::span(connectivity.triangles)), encoded.triangles);
   encoder.add(io::array_of(std::span<const std::int32_t>(connectivity.source_vertex),
-                           io::ElementType::int64),
+                           io::ElementType::kInt64),
               encoded.source_vertex);
   encoder.add(io::array_of(std::span<const std::int32_t>(connectivity.part)), encoded.part);
   if (!connectivity.face_filled.empty()) {
@@ -200,7 +200,7 @@ io::Selection selection(std::vector<std::int64_t> feature_counts, std::optional<
   return {.feature_counts = std::move(feature_counts),
           .smoothed = std::move(scale.smoothed),
           .level = told.value_or(scale.level),
-          .chosen = told ? io::Chosen::option : io::Chosen::slope};
+          .chosen = told ? io::Chosen::kOption : io::Chosen::kSlope};
 }
 
 }  // namespace

@@ -128,7 +128,7 @@ Table storage_rows() {
        .name = "compression",
        .help = "Of the stored arrays",
        .value = choice(field<&Surface::compression>(),
-                       {{"deflate", Compression::deflate}, {"none", Compression::none}})},
+                       {{"deflate", Compression::kDeflate}, {"none", Compression::kNone}})},
       {.key = "length_unit",
        .name = "unit",
        .help = "Length unit of the scans, as a label",

@@ -20,7 +20,7 @@ struct SurfaceParameters {
   FeatureOptions features = {};
   /// The level for recognition. If there is none, it is the level of least slope (thesis 5.8).
   std::optional<int> recognition_level = {};
-  io::Compression compression = io::Compression::deflate;
+  io::Compression compression = io::Compression::kDeflate;
   std::string length_unit = "unknown";  ///< Label of the scan's length unit, as UTF-8.
 };
 

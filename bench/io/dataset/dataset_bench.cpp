@@ -44,7 +44,7 @@ struct Content {
 
   io::EncodedConnectivity encode_connectivity(Compression compression) const {
     return {io::encode_array(io::array_of(std::span(triangles)), compression),
-            io::encode_array(io::array_of(std::span(source), io::ElementType::int64), compression),
+            io::encode_array(io::array_of(std::span(source), io::ElementType::kInt64), compression),
             io::encode_array(io::array_of(std::span(part)), compression)};
   }
   io::EncodedFields encode_fields(Compression compression) const {
@@ -84,8 +84,8 @@ void encode_fields(benchmark::State& state, Compression compression) {
   report_vertices(state, content.vertices());
   state.SetBytesProcessed(state.iterations() * content.field_bytes());
 }
-BENCHMARK_CAPTURE(encode_fields, deflate, Compression::deflate)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(encode_fields, none, Compression::none)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(encode_fields, deflate, Compression::kDeflate)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(encode_fields, none, Compression::kNone)->Unit(benchmark::kMillisecond);
 
 /// The whole way to the final name: encode, write, flush to the disk, read back, verify, rename.
 void write_dataset(benchmark::State& state, Compression compression) {
@@ -99,16 +99,16 @@ void write_dataset(benchmark::State& state, Compression compression) {
   state.counters["file_bytes_per_vertex_and_level"] =
       static_cast<double>(fs::file_size(path)) / static_cast<double>(kLevels * content.vertices());
 }
-BENCHMARK_CAPTURE(write_dataset, deflate, Compression::deflate)
+BENCHMARK_CAPTURE(write_dataset, deflate, Compression::kDeflate)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
-BENCHMARK_CAPTURE(write_dataset, none, Compression::none)
+BENCHMARK_CAPTURE(write_dataset, none, Compression::kNone)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
 /// A dataset on the disk (in the page cache), and its size.
 struct WrittenDataset {
-  WrittenDataset() { write(path, content, Compression::deflate); }
+  WrittenDataset() { write(path, content, Compression::kDeflate); }
   tests::TemporaryFolder folder;
   fs::path path = folder / "sphere.vtkhdf";
   Content content;

@@ -78,7 +78,7 @@ TEST_P(DatasetRoundTrip, EverythingComesBack) {
   EXPECT_EQ(selection.feature_counts, (std::vector<std::int64_t>{0, 26, 52}));
   EXPECT_EQ(selection.smoothed, (std::vector<double>{0.5, 26.5, 52.5}));
   EXPECT_EQ(selection.level, 2);
-  EXPECT_EQ(selection.chosen, sample().changing ? Chosen::option : Chosen::slope);
+  EXPECT_EQ(selection.chosen, sample().changing ? Chosen::kOption : Chosen::kSlope);
 
   for (int k = 0; k < 3; ++k) {
     const SampleLevel level = tests::sample_level(sample(), k);
@@ -129,19 +129,19 @@ TEST_P(DatasetRoundTrip, SameCallsGiveTheSameBytes) {
 
 std::string sample_name(const ::testing::TestParamInfo<std::tuple<bool, Compression>>& sample) {
   return std::string(std::get<0>(sample.param) ? "changing" : "same") +
-         (std::get<1>(sample.param) == Compression::none ? "_none" : "_deflate");
+         (std::get<1>(sample.param) == Compression::kNone ? "_none" : "_deflate");
 }
 
 INSTANTIATE_TEST_SUITE_P(All, DatasetRoundTrip,
                          ::testing::Combine(::testing::Bool(),
-                                            ::testing::Values(Compression::none,
-                                                              Compression::deflate)),
+                                            ::testing::Values(Compression::kNone,
+                                                              Compression::kDeflate)),
                          sample_name);
 
 TEST(Dataset, DigestIsOfTheContentNotOfTheLayout) {
   const tests::TemporaryFolder folder;
   const std::string packed = tests::write_sample(folder / "a.vtkhdf");
-  EXPECT_EQ(packed, tests::write_sample(folder / "b.vtkhdf", {.compression = Compression::none}));
+  EXPECT_EQ(packed, tests::write_sample(folder / "b.vtkhdf", {.compression = Compression::kNone}));
   EXPECT_NE(packed, tests::write_sample(folder / "c.vtkhdf", {.levels = 2}));
   EXPECT_NE(packed, tests::write_sample(folder / "d.vtkhdf", {.triangles = 9001}));
 }
@@ -297,9 +297,9 @@ TEST(Dataset, AsksForWhatExists) {
 TEST(DatasetWriter, UnfinishedLeavesNothing) {
   const tests::TemporaryFolder folder;
   {
-    DatasetWriter writer(folder / "a.vtkhdf", tests::sample_header(), Compression::deflate);
+    DatasetWriter writer(folder / "a.vtkhdf", tests::sample_header(), Compression::kDeflate);
     writer.write_connectivity(
-        tests::encode_connectivity(tests::sample_level({}, 0), Compression::deflate));
+        tests::encode_connectivity(tests::sample_level({}, 0), Compression::kDeflate));
     EXPECT_EQ(names_in(folder).size(), 1U);
     EXPECT_EQ(names_in(folder).count("a.vtkhdf"), 0U);
   }
@@ -308,7 +308,7 @@ TEST(DatasetWriter, UnfinishedLeavesNothing) {
 
 TEST(DatasetWriter, RefusesWhatDoesNotFit) {
   const tests::TemporaryFolder folder;
-  const Compression none = Compression::none;
+  const Compression none = Compression::kNone;
   const SampleLevel level = tests::sample_level({.vertices = 10, .triangles = 8}, 0);
   const SampleLevel longer = tests::sample_level({.vertices = 11, .triangles = 8}, 0);
   DatasetWriter writer(folder / "a.vtkhdf", tests::sample_header(), none);
@@ -325,7 +325,7 @@ TEST(DatasetWriter, RefusesWhatDoesNotFit) {
 
 TEST(DatasetWriter, RefusesASelectionThatDoesNotFit) {
   const tests::TemporaryFolder folder;
-  const Compression none = Compression::none;
+  const Compression none = Compression::kNone;
   const SampleLevel level = tests::sample_level({.vertices = 10, .triangles = 8}, 1);
   const Selection right = {.feature_counts = {26}, .smoothed = {26}};
   DatasetWriter writer(folder / "a.vtkhdf", tests::sample_header(), none);
@@ -355,11 +355,11 @@ TEST(DatasetWriter, RefusesASelectionThatDoesNotFit) {
 TEST(DatasetWriter, ScalesMustGrow) {
   const tests::TemporaryFolder folder;
   const SampleLevel level = tests::sample_level({.vertices = 10, .triangles = 8}, 0);
-  DatasetWriter writer(folder / "a.vtkhdf", tests::sample_header(), Compression::none);
-  writer.write_connectivity(tests::encode_connectivity(level, Compression::none));
-  writer.write_level(level.attributes, tests::encode_fields(level, Compression::none));
-  EXPECT_THROW(writer.write_level(level.attributes, tests::encode_fields(level, Compression::none)),
-               Error);
+  DatasetWriter writer(folder / "a.vtkhdf", tests::sample_header(), Compression::kNone);
+  writer.write_connectivity(tests::encode_connectivity(level, Compression::kNone));
+  writer.write_level(level.attributes, tests::encode_fields(level, Compression::kNone));
+  EXPECT_THROW(
+      writer.write_level(level.attributes, tests::encode_fields(level, Compression::kNone)), Error);
 }
 
 TEST(DatasetWriter, AFullDiskAtAnyMomentIsAnErrorAndLeavesNothing) {

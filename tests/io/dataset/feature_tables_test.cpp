@@ -32,7 +32,7 @@ LevelFeatures sample() {
 
 class FeatureTablesTest : public ::testing::Test {
  protected:
-  void write(const LevelFeatures& features, Compression compression = Compression::deflate) {
+  void write(const LevelFeatures& features, Compression compression = Compression::kDeflate) {
     write(encode_features(tables_of(features), compression));
   }
   void write(const EncodedFeatures& encoded, const std::function<void(Hdf5File&)>& change = {}) {
@@ -66,7 +66,7 @@ class FeatureTablesTest : public ::testing::Test {
                       const std::string& problem) {
     FeatureTables tables = tables_of(sample());
     change(tables);
-    write(encode_features(tables, Compression::none));
+    write(encode_features(tables, Compression::kNone));
     expect_refused(place, problem);
   }
 
@@ -80,7 +80,7 @@ TEST_F(FeatureTablesTest, EverythingComesBack) {
   for (int i = 0; i < 10'000; ++i) many.of_kind[0].push_back(many.of_kind[1][i % 7]);
   LevelFeatures none;
   for (kernels::SampledContours& contours : none.contours) contours.offsets = {0};
-  for (const Compression compression : {Compression::none, Compression::deflate})
+  for (const Compression compression : {Compression::kNone, Compression::kDeflate})
     for (const LevelFeatures& features : {sample(), many, none}) {
       write(features, compression);
       const Hdf5File file = Hdf5File::open(path_);
@@ -104,14 +104,14 @@ TEST_F(FeatureTablesTest, OtherReadersSeeTheSameRecords) {
   LevelFeatures features = sample();
   for (int i = 0; i < 10'000; ++i) features.of_kind[1].push_back(features.of_kind[0][i % 9]);
   const std::size_t rows = 10'000 + 10 + 12 + 14 + 16;
-  for (const Compression compression : {Compression::none, Compression::deflate}) {
+  for (const Compression compression : {Compression::kNone, Compression::kDeflate}) {
     write(features, compression);
     const Hdf5File file = Hdf5File::open(path_);
     EXPECT_GT(file.open_array("/level/features").shape().chunk_count(), 1);
     EXPECT_TRUE(file.shape_of("/level/contours").compact);
     for (const auto& [table, type, size] :
-         {std::tuple("/level/features", ElementType::feature, 72 * rows),
-          std::tuple("/level/contours", ElementType::contour, std::size_t{24 * 10})}) {
+         {std::tuple("/level/features", ElementType::kFeature, 72 * rows),
+          std::tuple("/level/contours", ElementType::kContour, std::size_t{24 * 10})}) {
       const std::vector<std::byte> ours = read_records(file, table, type);
       EXPECT_EQ(ours.size(), size);
       EXPECT_EQ(ours, file.read_through_library(table));
@@ -120,7 +120,7 @@ TEST_F(FeatureTablesTest, OtherReadersSeeTheSameRecords) {
 }
 
 TEST_F(FeatureTablesTest, TheTypeOfARecordHasItsMembers) {
-  for (const ElementType type : {ElementType::feature, ElementType::contour}) {
+  for (const ElementType type : {ElementType::kFeature, ElementType::kContour}) {
     std::string text;
     for (const RecordMember& member : members_of(type)) {
       text += (text.empty() ? "{" : ",") + std::string(member.name) + ":" +
@@ -133,14 +133,14 @@ TEST_F(FeatureTablesTest, TheTypeOfARecordHasItsMembers) {
 
 TEST_F(FeatureTablesTest, TheDigestHasALineWithThatType) {
   const std::vector<FeatureRow> features = tables_of(sample()).features;
-  const EncodedArray encoded = encode_array(array_of(features), Compression::deflate);
+  const EncodedArray encoded = encode_array(array_of(features), Compression::kDeflate);
   DigestedFile file(Hdf5File::create(path_));
   file.write_array("/t", encoded);
   const std::vector<std::uint64_t> hashes = {encoded.chunks.at(0).raw_xxh3};
   std::array<char, 17> hash;
   std::snprintf(hash.data(), hash.size(), "%016llx",
                 static_cast<unsigned long long>(xxh3_64(std::as_bytes(std::span(hashes)))));
-  std::ofstream(folder_ / "lines") << "dataset /t " << name_of(ElementType::feature) << " "
+  std::ofstream(folder_ / "lines") << "dataset /t " << name_of(ElementType::kFeature) << " "
                                    << features.size() << " " << hash.data() << "\ngroup /\n";
   EXPECT_EQ(file.digest().hex(), xxh3_of_file(folder_ / "lines"));
 }
@@ -189,9 +189,9 @@ void replace(const std::filesystem::path& path, const std::string& name, bool by
 
 TEST_F(FeatureTablesTest, ShapesAndTypesMustFit) {
   const FeatureTables tables = tables_of(sample());
-  const EncodedFeatures right = encode_features(tables, Compression::none);
+  const EncodedFeatures right = encode_features(tables, Compression::kNone);
   const auto encoded = [](const auto& rows) {
-    return encode_array(array_of(std::span(rows)), Compression::none);
+    return encode_array(array_of(std::span(rows)), Compression::kNone);
   };
   const std::pair<std::string, EncodedArray> wrong[] = {
       {"features", encoded(std::vector<float>(52))},
@@ -211,7 +211,7 @@ TEST_F(FeatureTablesTest, ShapesAndTypesMustFit) {
 }
 
 TEST_F(FeatureTablesTest, TablesMayNotBeMissing) {
-  const EncodedFeatures right = encode_features(tables_of(sample()), Compression::none);
+  const EncodedFeatures right = encode_features(tables_of(sample()), Compression::kNone);
   for (const std::string name : {"features", "contours", "contour_points"}) {
     write(right);
     replace(path_, kLevel + ("/" + name), false);
@@ -227,7 +227,7 @@ TEST_F(FeatureTablesTest, TheCountsMustBeThoseOfTheTables) {
       {"feature_counts", {-10, 32, 14, 16}, "/features: has not the rows"},
       {"contour_counts", {4, 7}, "/contours: has not the rows"}};
   for (const auto& [name, counts, problem] : wrong) {
-    write(encode_features(tables_of(sample()), Compression::none));
+    write(encode_features(tables_of(sample()), Compression::kNone));
     {
       const Hdf5Handle file(H5Fopen(path_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
       const Hdf5Handle group(H5Oopen(file.get(), kLevel, H5P_DEFAULT), H5Oclose);
@@ -246,7 +246,7 @@ TEST_F(FeatureTablesTest, OtherRecordsAreRefused) {
         std::size_t offset = 0;
         for (const RecordMember& member : kFeatureMembers) {
           const auto columns = static_cast<hsize_t>(member.columns);
-          const bool wide = member.type == ElementType::int64;
+          const bool wide = member.type == ElementType::kInt64;
           const hid_t number = wide ? H5T_STD_I64LE : H5T_IEEE_F32LE;
           const Hdf5Handle element(
               columns == 1 ? H5Tcopy(number) : H5Tarray_create2(number, 1, &columns), H5Tclose);
@@ -276,7 +276,7 @@ TEST_F(FeatureTablesTest, OtherRecordsAreRefused) {
 }
 
 TEST_F(FeatureTablesTest, TheWriterRefusesWhatDoesNotFit) {
-  const EncodedFeatures right = encode_features(tables_of(sample()), Compression::none);
+  const EncodedFeatures right = encode_features(tables_of(sample()), Compression::kNone);
   std::vector<EncodedFeatures> wrong(6, right);
   wrong[0].features = {};
   wrong[1].contours = {};

@@ -106,7 +106,7 @@ io::EncodedFields encode_fields(const SampleLevel& level, io::Compression compre
 
 io::EncodedConnectivity encode_connectivity(const SampleLevel& level, io::Compression compression) {
   return {io::encode_array(io::array_of(std::span(level.triangles)), compression),
-          io::encode_array(io::array_of(level.source_vertex, io::ElementType::int64), compression),
+          io::encode_array(io::array_of(level.source_vertex, io::ElementType::kInt64), compression),
           io::encode_array(io::array_of(level.part), compression)};
 }
 
@@ -117,7 +117,7 @@ io::Selection sample_selection(const Sample& sample) {
     selection.smoothed.push_back(static_cast<double>(selection.feature_counts.back()) + 0.5);
   }
   selection.level = sample.levels - 1;
-  selection.chosen = sample.changing ? io::Chosen::option : io::Chosen::slope;
+  selection.chosen = sample.changing ? io::Chosen::kOption : io::Chosen::kSlope;
   return selection;
 }
 

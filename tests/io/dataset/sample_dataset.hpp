@@ -17,7 +17,7 @@ struct Sample {
   bool changing = false;         ///< from level 1 on each level brings its own connectivity
   std::int64_t vertices = 5000;  ///< of level 0; a changing level k has 100 k fewer
   std::int64_t triangles = 9000;
-  io::Compression compression = io::Compression::deflate;
+  io::Compression compression = io::Compression::kDeflate;
 
   std::int64_t vertices_of(int level) const { return vertices - (changing ? 100 * level : 0); }
   std::int64_t triangles_of(int level) const { return triangles - (changing ? 50 * level : 0); }

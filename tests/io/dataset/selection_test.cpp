@@ -16,7 +16,7 @@ class SelectionTest : public ::testing::Test {
   std::string failure(const Selection& selection, int levels) {
     {
       DigestedFile file(Hdf5File::create(path_));
-      write_selection(file, selection, Compression::deflate);
+      write_selection(file, selection, Compression::kDeflate);
       file.file().close();
     }
     try {
@@ -37,9 +37,9 @@ class SelectionTest : public ::testing::Test {
 
 TEST_F(SelectionTest, MustFitTheLevels) {
   const Selection right = {
-      .feature_counts = {1, 2}, .smoothed = {0.5, 1}, .level = 1, .chosen = Chosen::option};
+      .feature_counts = {1, 2}, .smoothed = {0.5, 1}, .level = 1, .chosen = Chosen::kOption};
   EXPECT_EQ(failure(right, 2), "");
-  EXPECT_EQ(read_selection(Hdf5File::open(path_), 2).chosen, Chosen::option);
+  EXPECT_EQ(read_selection(Hdf5File::open(path_), 2).chosen, Chosen::kOption);
   expect_refused(right, 3, "/selection/feature_counts: has not one row for each of 3 levels");
   Selection wrong = right;
   wrong.smoothed.pop_back();

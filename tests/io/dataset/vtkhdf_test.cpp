@@ -24,7 +24,7 @@ EncodedArray constant(std::int64_t rows, int columns, float value) {
   view.columns = columns;
   view.rows /= columns;
   view.row_stride *= columns;
-  return encode_array(view, Compression::deflate);
+  return encode_array(view, Compression::kDeflate);
 }
 
 // Three levels with the arrays that /VTKHDF shows, and their steps.
@@ -58,7 +58,7 @@ std::string error_of(bool changing, const Mutation& mutate) {
     DigestedFile file(Hdf5File::create(folder / "a.h5"));
     VtkhdfLayout layout = vtkhdf_layout(write_levels(file, changing));
     mutate(layout);
-    write_vtkhdf(file, layout, Compression::deflate);
+    write_vtkhdf(file, layout, Compression::kDeflate);
     file.file().close();
   }
   try {
@@ -108,7 +108,7 @@ TEST(Vtkhdf, ChangingConnectivityHasAPartForEachStep) {
             (Numbers{0, 0, 0, 0, 0, 0, 6, 0, 0, 0, 15, 0}));
   EXPECT_EQ(layout.tables.at("NumberOfPoints").values, (Numbers{4, 5, 6}));
   EXPECT_EQ(layout.tables.at("Lines/Offsets").values, (Numbers{0, 0, 0}));
-  write_vtkhdf(file, layout, Compression::none);
+  write_vtkhdf(file, layout, Compression::kNone);
   file.file().close();
   const std::vector<std::byte> offsets =
       Hdf5File::open(folder / "a.h5").read_through_library("/VTKHDF/Polygons/Offsets");
@@ -195,7 +195,7 @@ std::vector<Rule> rules() {
       {"/Strips/NumberOfConnectivityIds", "is missing", without("Strips/NumberOfConnectivityIds")},
       {"/Lines/Connectivity", "must be empty", longer("Lines/Connectivity")},
       {"/Points", "offsets add up to", view("Points", [](auto& v) { v.pieces.pop_back(); })},
-      {"/Points", "wrong type", view("Points", [](auto& v) { v.type = ElementType::int32; })},
+      {"/Points", "wrong type", view("Points", [](auto& v) { v.type = ElementType::kInt32; })},
       {"/PointData/part", "another type or size",
        view("PointData/part", [](auto& v) { v.pieces[1].source = "/levels/001/mean_curvature"; })},
       {"/Points", "is missing", [](auto& l) { l.views.erase("Points"); }},
@@ -228,7 +228,7 @@ TEST(Vtkhdf, SourcesMustExist) {
   // Writing already refuses a source that does not exist: rename one afterwards.
   const tests::TemporaryFolder folder;
   DigestedFile file(Hdf5File::create(folder / "a.h5"));
-  write_vtkhdf(file, vtkhdf_layout(write_levels(file, false)), Compression::none);
+  write_vtkhdf(file, vtkhdf_layout(write_levels(file, false)), Compression::kNone);
   file.file().close();
   {
     const Hdf5Handle open(H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);

@@ -9,6 +9,6 @@ int main(int argc, char** argv) {
   if (argc != 4) return 2;
   semigeo::tests::Sample sample{.vertices = 50000, .triangles = 90000};
   sample.changing = argv[2] == std::string("changing");
-  if (argv[3] == std::string("none")) sample.compression = semigeo::io::Compression::none;
+  if (argv[3] == std::string("none")) sample.compression = semigeo::io::Compression::kNone;
   std::cout << semigeo::tests::write_sample(argv[1], sample) << "\n";
 }

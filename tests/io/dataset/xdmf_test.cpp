@@ -44,7 +44,7 @@ TEST(Xdmf, EveryReferenceHasTheShapeAndTypeOfItsArray) {
     const std::string path = between(text, at, ":", "<");
     const ArrayShape shape = file.open_array(path).shape();
     EXPECT_EQ(between(text, at, "NumberType=\"", "\""),
-              shape.type == ElementType::float32 ? "Float" : "Int")
+              shape.type == ElementType::kFloat32 ? "Float" : "Int")
         << path;
     EXPECT_EQ(between(text, at, "Precision=\"", "\""), std::to_string(size_of(shape.type)));
     std::string dimensions = std::to_string(shape.rows);

@@ -106,7 +106,7 @@ TEST_P(ChunkCodec, TrianglesAreWidened) {
   }
   const EncodedArray array =
       encode_array(array_of(std::span(std::as_const(triangles))), GetParam());
-  EXPECT_EQ(array.shape.type, ElementType::int64);
+  EXPECT_EQ(array.shape.type, ElementType::kInt64);
   EXPECT_EQ(array.shape.columns, 3);
   expect_stored(array, expected);
 }
@@ -153,16 +153,16 @@ TEST_P(ChunkCodec, RefusesTruncatedChunks) {
 }
 
 std::string compression_name(const ::testing::TestParamInfo<Compression>& compression) {
-  return compression.param == Compression::none ? "none" : "deflate";
+  return compression.param == Compression::kNone ? "none" : "deflate";
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ChunkCodec,
-                         ::testing::Values(Compression::none, Compression::deflate),
+                         ::testing::Values(Compression::kNone, Compression::kDeflate),
                          compression_name);
 
 TEST(ChunkCodecDeflate, StoresNoiseButPacksTheRest) {
   // Two of four bytes are noise: the chunk must shrink, though not by more than the other half.
-  const EncodedArray array = encode_array(array_of(noisy_floats(65536)), Compression::deflate);
+  const EncodedArray array = encode_array(array_of(noisy_floats(65536)), Compression::kDeflate);
   ASSERT_EQ(array.chunks.size(), 1U);
   EXPECT_EQ(array.chunks[0].filter_mask, 0U);
   EXPECT_LT(array.chunks[0].bytes.size(), 230000U);
@@ -170,7 +170,7 @@ TEST(ChunkCodecDeflate, StoresNoiseButPacksTheRest) {
 }
 
 TEST(ChunkCodecDeflate, SkipsFiltersThatDoNotShrink) {
-  const EncodedArray array = encode_array(array_of(random_integers(32768)), Compression::deflate);
+  const EncodedArray array = encode_array(array_of(random_integers(32768)), Compression::kDeflate);
   ASSERT_EQ(array.chunks.size(), 1U);
   EXPECT_EQ(array.chunks[0].filter_mask, kUnfiltered);
   EXPECT_EQ(array.chunks[0].bytes.size(), 262144U + 4U);
@@ -178,7 +178,7 @@ TEST(ChunkCodecDeflate, SkipsFiltersThatDoNotShrink) {
 
 TEST(ChunkCodecDeflate, PaddingIsZeroAndNotHashed) {
   std::vector<float> values(70000, 1.0F);  // 65536 rows a chunk: the second has 4464
-  const EncodedArray array = encode_array(array_of(values), Compression::deflate);
+  const EncodedArray array = encode_array(array_of(values), Compression::kDeflate);
   ASSERT_EQ(array.chunks.size(), 2U);
   std::vector<std::byte> rows(static_cast<std::size_t>(array.shape.chunk_bytes()));
   ASSERT_TRUE(decode_chunk(array.shape, array.chunks[1].bytes, 0, rows));
@@ -188,7 +188,7 @@ TEST(ChunkCodecDeflate, PaddingIsZeroAndNotHashed) {
 }
 
 TEST(ChunkCodecShape, SmallArraysAreCompact) {
-  for (const Compression compression : {Compression::none, Compression::deflate}) {
+  for (const Compression compression : {Compression::kNone, Compression::kDeflate}) {
     const EncodedArray small = encode_array(array_of(noisy_floats(1024)), compression);
     EXPECT_TRUE(small.shape.compact);
     EXPECT_EQ(small.shape.chunk_count(), 1);
@@ -204,7 +204,7 @@ TEST(ChunkCodecShape, SmallArraysAreCompact) {
 TEST(ChunkCodecShape, ChunksHaveAQuarterMebibyte) {
   ArrayView view = array_of(std::span<const Eigen::Vector3f>());
   view.rows = 1'500'000;
-  const ArrayShape shape = shape_of(view, Compression::deflate);
+  const ArrayShape shape = shape_of(view, Compression::kDeflate);
   EXPECT_EQ(shape.chunk_rows, 21845);
   EXPECT_EQ(shape.chunk_count(), 69);
   EXPECT_EQ(shape.rows_in_chunk(68), 1'500'000 - 68 * 21845);
@@ -213,10 +213,10 @@ TEST(ChunkCodecShape, ChunksHaveAQuarterMebibyte) {
 TEST(ChunkCodecShape, RefusesConversionsThatLoseAndChunksThatAreNot) {
   const std::vector<std::int64_t> values(10);
   ArrayView view = array_of(values);
-  EXPECT_THROW(encode_chunk(view, 1, Compression::none), std::invalid_argument);
-  EXPECT_THROW(encode_chunk(view, -1, Compression::none), std::invalid_argument);
-  view.stored_type = ElementType::int32;
-  EXPECT_THROW(encode_chunk(view, 0, Compression::none), std::invalid_argument);
+  EXPECT_THROW(encode_chunk(view, 1, Compression::kNone), std::invalid_argument);
+  EXPECT_THROW(encode_chunk(view, -1, Compression::kNone), std::invalid_argument);
+  view.stored_type = ElementType::kInt32;
+  EXPECT_THROW(encode_chunk(view, 0, Compression::kNone), std::invalid_argument);
 }
 
 TEST(Fletcher32, KnownSums) {

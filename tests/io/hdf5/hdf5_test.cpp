@@ -21,7 +21,7 @@ namespace semigeo::io {
 namespace {
 
 EncodedArray encode(const std::vector<float>& values) {
-  return encode_array(array_of(values), Compression::deflate);
+  return encode_array(array_of(values), Compression::kDeflate);
 }
 
 std::string message_of(const std::function<void()>& action) {
@@ -85,8 +85,8 @@ TEST(Hdf5, ListsGroupsArraysAndLinks) {
   ASSERT_EQ(links.size(), 3U);
   EXPECT_EQ(links[0].name, "a");
   EXPECT_EQ(links[1].name, "c");
-  EXPECT_EQ(links[1].kind, Hdf5Link::Kind::group);
-  EXPECT_EQ(links[2].kind, Hdf5Link::Kind::array);
+  EXPECT_EQ(links[1].kind, Hdf5Link::Kind::kGroup);
+  EXPECT_EQ(links[2].kind, Hdf5Link::Kind::kArray);
   EXPECT_EQ(links[0].address, links[2].address);
   EXPECT_EQ(links[0].address, read.address("/b/a"));
   EXPECT_TRUE(read.has("/b/c"));
@@ -131,14 +131,14 @@ TEST(Hdf5, SmallArraysAreReadOnce) {
 TEST(Hdf5, VirtualArraysShowTheirSourcesOneAfterTheOther) {
   const tests::TemporaryFolder folder;
   const std::vector<Eigen::Vector3f> points = {{1, 2, 3}, {4, 5, 6}};
-  const EncodedArray rows = encode_array(array_of(std::span(points)), Compression::none);
+  const EncodedArray rows = encode_array(array_of(std::span(points)), Compression::kNone);
   const std::vector<VirtualPiece> as_rows = {{"/p", 2}, {"/q", 2}};
   const std::vector<VirtualPiece> as_column = {{"/q", 6}, {"/p", 6}};
   Hdf5File file = Hdf5File::create(folder / "a.h5");
   file.write_array("/p", rows);
   file.write_array("/q", rows);
-  file.write_virtual("/rows", ElementType::float32, 3, as_rows);
-  file.write_virtual("/column", ElementType::float32, 1, as_column);
+  file.write_virtual("/rows", ElementType::kFloat32, 3, as_rows);
+  file.write_virtual("/column", ElementType::kFloat32, 1, as_column);
   file.close();
 
   const Hdf5File read = Hdf5File::open(folder / "a.h5");
@@ -161,7 +161,7 @@ TEST(Hdf5, ReadersRefuseOtherShapesAndTypes) {
   EXPECT_EQ(read_floats(read, "/a", 1), (std::vector<float>{1, 2, 3}));
   EXPECT_TRUE(mentions(message_of([&] { read_floats(read, "/a", 3); }), "1 columns instead of 3"));
   EXPECT_TRUE(mentions(message_of([&] { read_integers(read, "/a", 1); }), "float32 instead of"));
-  EXPECT_TRUE(mentions(message_of([&] { read_records(read, "/a", ElementType::feature); }),
+  EXPECT_TRUE(mentions(message_of([&] { read_records(read, "/a", ElementType::kFeature); }),
                        "float32 instead of {vertex:int64,"));
   EXPECT_TRUE(mentions(message_of([&] { read_floats(read, "/b", 1); }), "/b"));
 }
@@ -208,7 +208,7 @@ TEST(Hdf5, PromisesWithoutBytesAllocateNothing) {
   const auto write = [&](Hdf5File& file, const std::string& path, std::int64_t rows,
                          std::int64_t chunk_rows) {
     EncodedArray array;
-    array.shape = {ElementType::float32, rows, 1, chunk_rows, Compression::deflate};
+    array.shape = {ElementType::kFloat32, rows, 1, chunk_rows, Compression::kDeflate};
     array.chunks.resize(static_cast<std::size_t>(array.shape.chunk_count()), honest.chunks[0]);
     file.write_array(path, array);
   };
@@ -254,7 +254,7 @@ TEST(Hdf5, PrintsNothingInAnyThread) {
 TEST(Hdf5, FullDiskIsAnErrorAndTheProcessGoesOn) {
   const tests::TemporaryFolder folder;
   const EncodedArray array = encode(std::vector<float>(300000, 0.1F));
-  EncodedArray raw = encode_array(array_of(std::vector<float>(300000)), Compression::none);
+  EncodedArray raw = encode_array(array_of(std::vector<float>(300000)), Compression::kNone);
   {
     const tests::FileSizeLimit limit(100'000);
     Hdf5File file = Hdf5File::create(folder / "full.h5");

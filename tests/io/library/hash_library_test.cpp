@@ -279,7 +279,7 @@ void rewrite(const std::filesystem::path& from, const std::filesystem::path& to,
   copy.create_group("/models");
   for (const std::string group : {"/", "/models/"})
     for (const Hdf5Link& link : file.links(group)) {
-      if (link.kind != Hdf5Link::Kind::array) continue;
+      if (link.kind != Hdf5Link::Kind::kArray) continue;
       const std::string path = group + link.name;
       std::vector<std::byte> bytes = file.read_through_library(path);
       change(path, bytes);

@@ -12,10 +12,10 @@ using ScanReader = ScanFileTest;
 const std::string kObj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf 1 2 3\n";
 
 TEST(ScanFormatTest, IsDecidedByTheName) {
-  EXPECT_EQ(scan_format("a.ply"), ScanFormat::ply);
-  EXPECT_EQ(scan_format("x/y.b/a b.OBJ"), ScanFormat::obj);
-  EXPECT_EQ(scan_format("a.Off.gz"), ScanFormat::off);
-  EXPECT_EQ(scan_format("a.ply.stl.GZ"), ScanFormat::stl);
+  EXPECT_EQ(scan_format("a.ply"), ScanFormat::kPly);
+  EXPECT_EQ(scan_format("x/y.b/a b.OBJ"), ScanFormat::kObj);
+  EXPECT_EQ(scan_format("a.Off.gz"), ScanFormat::kOff);
+  EXPECT_EQ(scan_format("a.ply.stl.GZ"), ScanFormat::kStl);
   for (const char* name :
        {"a", "a.gz", "ply", ".ply", "a.plyx", "a.ply.zip", "a.ply.gz.gz", "", "a.ply/b"})
     EXPECT_EQ(scan_format(name), std::nullopt) << name;

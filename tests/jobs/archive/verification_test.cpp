@@ -31,7 +31,7 @@ std::string everything_in(const io::Hdf5File& file, const std::string& group) {
     text += attribute.name + " " + attribute.type + "\n";
   for (const io::Hdf5Link& link : file.links(group)) {
     const std::string path = (group == "/" ? "" : group) + "/" + link.name;
-    if (link.kind == io::Hdf5Link::Kind::group) {
+    if (link.kind == io::Hdf5Link::Kind::kGroup) {
       text += everything_in(file, path);
     } else {
       const auto bytes = file.read_through_library(path);

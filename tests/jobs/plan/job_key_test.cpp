@@ -21,7 +21,7 @@ TEST(JobKeyTest, OfASurfaceChangesWithEverythingThatTheContentDependsOn) {
   EXPECT_TRUE(is_new(key_of("a.ply", "1234", {.levels = 9})));
   EXPECT_TRUE(is_new(key_of("a.ply", "1234", {.evolution = {.curved = false}})));
   EXPECT_TRUE(is_new(key_of("a.ply", "1234", {.evolution = {.step_factor = 1.0000001}})));
-  EXPECT_TRUE(is_new(key_of("a.ply", "1234", {.compression = io::Compression::none})));
+  EXPECT_TRUE(is_new(key_of("a.ply", "1234", {.compression = io::Compression::kNone})));
   EXPECT_TRUE(is_new(key_of("a.ply", "1234", {.length_unit = "mm"})));
   EXPECT_FALSE(is_new(key_of("a.ply", "1234", {})));
 }

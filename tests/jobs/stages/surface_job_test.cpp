@@ -178,7 +178,7 @@ TEST_F(SurfaceJobTest, EveryNumberOfThreadsGivesTheSameBytes) {
   TriangleMesh mesh = shapes::torus(1, 0.4, 300, 100, 0.3);  // several chunks of each array
   shapes::add_noise(mesh, 0.001, 1);
   const fs::path input = scan(mesh);
-  for (const io::Compression compression : {io::Compression::deflate, io::Compression::none}) {
+  for (const io::Compression compression : {io::Compression::kDeflate, io::Compression::kNone}) {
     const SurfaceParameters parameters = {.levels = 1, .compression = compression};
     const SurfaceJob job = job_for(input, parameters);
     run(job, parameters, 1);
@@ -195,7 +195,7 @@ TEST_F(SurfaceJobTest, CompressionChangesTheFileButNoValue) {
   const fs::path input = scan(shapes::torus(1, 0.4, 60, 40, 0.3));
   run(job_for(input), {.levels = 1});
   fs::rename(folder_ / "scan.vtkhdf", folder_ / "packed.vtkhdf");
-  run(job_for(input), {.levels = 1, .compression = io::Compression::none});
+  run(job_for(input), {.levels = 1, .compression = io::Compression::kNone});
   EXPECT_GT(fs::file_size(folder_ / "scan.vtkhdf"), fs::file_size(folder_ / "packed.vtkhdf"));
   const io::Dataset plain(folder_ / "scan.vtkhdf"), packed(folder_ / "packed.vtkhdf");
   for (const char* name : {"points", "normals", "gaussian_curvature", "mean_curvature"})

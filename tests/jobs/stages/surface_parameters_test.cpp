@@ -41,7 +41,7 @@ TEST(SurfaceParametersTest, EachOfThemShows) {
     if (field == 0) changed.levels = 9;
     if (field == 1) changed.evolution.curved = false;
     if (field == 2) changed.evolution.step_factor = std::nextafter(1.0, 2.0);
-    if (field == 3) changed.compression = io::Compression::none;
+    if (field == 3) changed.compression = io::Compression::kNone;
     if (field == 4) changed.length_unit = "mm";
     if (field == 5) changed.evolution.coordinates = kernels::Coordinates::polar;
     if (field == 6) changed.evolution.schedule = Schedule::kOctaves;

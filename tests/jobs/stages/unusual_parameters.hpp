@@ -20,7 +20,7 @@ inline SurfaceParameters unusual_parameters() {
                         .step_factor = 0.1},
           .features = {.radius = 0, .min_completeness = 0.75},
           .recognition_level = 2,
-          .compression = io::Compression::none,
+          .compression = io::Compression::kNone,
           .length_unit = "m\"m"};
 }
 
