@@ -13,21 +13,22 @@
 
 namespace semigeo::jobs {
 
-/// Calls use(i, run) for each run, on any thread and in any order, and returns io::runs_hash of
-/// all. Error unless the names of their models ascend.
+/// Calls use(i, run) for each run, on any thread and in any order, and returns io::runs_hash of all
+/// runs. Throws io::Error if a run is damaged, or if the names of the models do not ascend.
 std::uint64_t for_each_run(const std::vector<std::filesystem::path>& runs, engine::Workers& workers,
                            const std::function<void(std::size_t, const io::TripletRun&)>& use);
 
-/// Cuts [0, sizes.size()) into consecutive ranges whose sizes add up to `capacity` at most, or that
-/// hold one index alone.
+/// Cuts [0, sizes.size()) into consecutive ranges. The sizes of a range add up to `capacity` at
+/// most, unless it holds one index alone.
 std::vector<engine::IndexRange> batches_of(std::span<const std::int64_t> sizes,
                                            std::int64_t capacity);
 
-/// What PartitionJob and LibraryJob mean by their memory_bytes: 512 MiB by 0.
+/// Returns the number of bytes that memory_bytes of PartitionJob and LibraryJob means: 0 means
+/// 512 MiB.
 std::int64_t memory_or_default(std::int64_t memory_bytes);
 
-/// Calls make(i) for all i < count on several threads and write(result) in the order of i on one at
-/// a time, as HDF5 needs it, `at_once` of them: while some are written, the next ones are made.
+/// Calls make(i) for all i < count on several threads, and write(result) in the order of i on one
+/// thread at a time, as HDF5 needs it. While `at_once` results are written, the next ones are made.
 template <typename Make, typename Write>
 void make_and_write(std::int64_t count, std::int64_t at_once, engine::Workers& workers,
                     const Make& make, const Write& write) {

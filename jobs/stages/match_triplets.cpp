@@ -11,15 +11,10 @@ namespace {
 using kernels::Posting;
 using kernels::Triplet;
 
-/// So many postings stay in the first-level cache while all that looks for them passes.
+/// The number of postings that stay in the first-level cache while all lookups of a cell pass.
 constexpr std::int64_t kTile = 512;
 
-/// From here on it pays to find out first how many matches there will be.
-constexpr double kManyCompared = 2e8;
-constexpr std::size_t kProbedBlocks = 12;
-constexpr std::size_t kProbedSegments = 40;
-
-/// Numbers of the triangles that triplets are, in whatever order of corners.
+/// Returns the number of the triangle that each triplet is, in whatever order of corners.
 std::vector<std::uint32_t> triangles_of(const std::vector<Triplet>& triplets) {
   struct Place {
     std::uint64_t corners;
@@ -44,12 +39,13 @@ std::vector<std::uint32_t> triangles_of(const std::vector<Triplet>& triplets) {
   return numbers;
 }
 
-/// In [0, 1), evenly spread whatever the numbers are (Weyl's sequence, golden ratio).
+/// Returns a number in [0, 1). Numbers of different triangles are evenly spread (Weyl's sequence,
+/// golden ratio).
 double lot_of(std::uint32_t triangle) {
   return static_cast<double>(triangle * 2654435769U) / 4294967296.0;
 }
 
-/// Lookups of one cell in one block of postings.
+/// The lookups of one cell in one block of postings.
 struct Segment {
   std::int64_t block;
   std::int64_t first_posting;  ///< within the block
@@ -60,20 +56,24 @@ struct Segment {
 
 class Matcher {
  public:
-  Matcher(const io::HashLibrary& library, const std::vector<Triplet>& scene)
+  Matcher(const io::HashLibrary& library, const std::vector<Triplet>& scene,
+          const LookUpTuning& tuning)
       : library_(library),
         cells_(library.cells()),
         scene_(scene),
-        triangles_(triangles_of(scene)) {}
+        triangles_(triangles_of(scene)),
+        tuning_(tuning) {}
 
-  TripletMatches run(const MatchLimits& limits, const engine::RunContext& context) {
+  TripletMatches run(const engine::RunContext& context) {
     const double triangles = triangles_.empty() ? 1 : 1.0 + std::ranges::max(triangles_);
-    double share = std::min(1.0, static_cast<double>(limits.triangles) / triangles);
+    double share = std::min(1.0, static_cast<double>(tuning_.most_triangles) / triangles);
     look_up(share);
-    if (const auto compared = static_cast<double>(comparisons()); compared > kManyCompared) {
+    if (const auto compared = static_cast<double>(comparisons());
+        compared > tuning_.many_compared) {
       const double matches = compared * match_rate(context);
-      const double most = std::min(static_cast<double>(limits.compared) / compared,
-                                   static_cast<double>(limits.matches) / std::max(matches, 1.0));
+      const double most =
+          std::min(static_cast<double>(tuning_.most_compared) / compared,
+                   static_cast<double>(tuning_.most_matches) / std::max(matches, 1.0));
       if (most < 1) look_up(share *= most);
     }
     cut_into_blocks();
@@ -87,8 +87,8 @@ class Matcher {
   }
 
  private:
-  /// Of an even share of the triangles, sorts triplets by the cells that they look into: those of
-  /// cell c are lookups_[first_lookup_[c]] and so on.
+  /// Sorts triplets of an even share of the triangles by the cells that they look into. Those of
+  /// cell c begin at lookups_[first_lookup_[c]].
   void look_up(double share) {
     std::vector<std::uint32_t> chosen;
     for (std::uint32_t i = 0; i < scene_.size(); ++i)
@@ -122,10 +122,10 @@ class Matcher {
     return sum;
   }
 
-  /// Matches a comparison, in a few blocks that are spread evenly.
+  /// Returns the number of matches for each comparison, in a few blocks that are spread evenly.
   double match_rate(const engine::RunContext& context) {
     cut_into_blocks();
-    const std::size_t step = std::max<std::size_t>(blocks_.size() / kProbedBlocks, 1);
+    const std::size_t step = std::max<std::size_t>(blocks_.size() / tuning_.probed_blocks, 1);
     const std::size_t probed = (blocks_.size() + step - 1) / step;
     std::vector<std::int64_t> compared(probed);
     std::vector<std::int64_t> matches(probed);
@@ -133,9 +133,9 @@ class Matcher {
       for (auto i = range.begin; i < range.end; ++i) {
         const auto [first, last] = blocks_[static_cast<std::size_t>(i) * step];
         std::vector<TripletMatch> found;
-        compare_block({first, std::min(last, first + kProbedSegments)}, found);
+        compare_block({first, std::min(last, first + tuning_.probed_segments)}, found);
         matches[i] = static_cast<std::int64_t>(found.size());
-        for (std::size_t s = first; s < std::min(last, first + kProbedSegments); ++s)
+        for (std::size_t s = first; s < std::min(last, first + tuning_.probed_segments); ++s)
           compared[i] +=
               (segments_[s].last_posting - segments_[s].first_posting) *
               static_cast<std::int64_t>(segments_[s].last_lookup - segments_[s].first_lookup);
@@ -224,7 +224,8 @@ class Matcher {
   const io::HashLibrary& library_;
   std::span<const std::uint64_t> cells_;
   const std::vector<Triplet>& scene_;
-  std::vector<std::uint32_t> triangles_;
+  std::vector<std::uint32_t> triangles_;  ///< Number of the triangle of each triplet.
+  const LookUpTuning& tuning_;
   std::vector<std::size_t> first_lookup_;  ///< (cells + 1)
   std::vector<std::uint32_t> lookups_;     ///< triplets of the scene
   std::vector<Segment> segments_;
@@ -234,8 +235,8 @@ class Matcher {
 }  // namespace
 
 TripletMatches match_triplets(const io::HashLibrary& library, const std::vector<Triplet>& scene,
-                              const MatchLimits& limits, const engine::RunContext& context) {
-  return Matcher(library, scene).run(limits, context);
+                              const LookUpTuning& tuning, const engine::RunContext& context) {
+  return Matcher(library, scene, tuning).run(context);
 }
 
 }  // namespace semigeo::jobs

@@ -10,26 +10,28 @@
 
 namespace semigeo::jobs {
 
-/// Runs of all models in, the postings of some shapes out (io/library/posting_partition.hpp).
+/// A job that reads the runs of all models and writes the postings of some shapes
+/// (io/library/posting_partition.hpp).
 struct PartitionJob {
-  std::vector<std::filesystem::path> runs;  ///< model i of the library is runs[i]: sorted by name
+  std::vector<std::filesystem::path> runs;  ///< Run of each model, sorted by name.
   io::ShapeRange shapes;
   std::filesystem::path output;
-  std::string key;                ///< hash of everything the partition depends on
-  std::int64_t memory_bytes = 0;  ///< for postings and buffers, at most; 0: 512 MiB
+  std::string key;                ///< Hash of everything the partition depends on.
+  std::int64_t memory_bytes = 0;  ///< Limit for postings and buffers; 0: 512 MiB.
 };
 
+/// What a partition job made.
 struct PartitionJobResult {
   std::int64_t postings = 0;
 };
 
-/// Throws io::Error on a damaged run, on names that do not ascend, and when the partition cannot be
-/// written. Neither threads nor memory change the result.
+/// Writes the partition. Throws io::Error if a run is damaged, if the names do not ascend, or if
+/// the partition cannot be written. Neither threads nor memory change the result.
 PartitionJobResult run_partition_job(const PartitionJob& job, const engine::RunContext& context);
 
-/// The partitions of a library of so many models, in order; together they have every shape once.
-/// It depends on nothing else, so that a plan can be made before there is a run; whatever it is,
-/// the library is the same, byte by byte.
+/// Returns the shapes of each partition of a library of so many models, in order. Together the
+/// partitions have every shape once. The result depends on the number of models alone, so that a
+/// plan can be made before there is a run. The bytes of the library do not depend on it.
 std::vector<io::ShapeRange> partition_shapes(std::int64_t models);
 
 }  // namespace semigeo::jobs

@@ -11,36 +11,38 @@
 
 namespace semigeo::jobs {
 
-/// Scene and library in, what of the library is in the scene out (recognised_file.hpp).
+/// A job that finds models of a library in a scene and writes them to a file (recognised_file.hpp).
 struct RecogniseJob {
-  std::filesystem::path scene;  ///< a scan or a dataset
-  std::string input_name;       ///< what the output says of it, as UTF-8
+  std::filesystem::path scene;  ///< File of a scan or a dataset.
+  std::string input_name;       ///< Name of the scene in the output, as UTF-8.
   std::string name;
-  std::string input_xxh3;  ///< of the scene's bytes
+  std::string input_xxh3;  ///< Digest of the scene's bytes.
   std::filesystem::path library;
-  std::string library_digest;  ///< of its content
+  std::string library_digest;  ///< Digest of the library's content.
   std::filesystem::path output;
-  std::string key;  ///< hash of everything the output depends on
+  std::string key;  ///< Hash of everything the output depends on.
 };
 
+/// What a recognise job found.
 struct RecogniseJobResult {
-  std::int64_t features = 0;  ///< of the scene
-  std::int64_t triplets = 0;  ///< of them
-  std::int64_t objects = 0;   ///< that were found
+  std::int64_t features = 0;  ///< Number of features of the scene.
+  std::int64_t triplets = 0;  ///< Number of triplets of these features.
+  std::int64_t objects = 0;   ///< Number of objects found.
 };
 
-/// The parameters with which features of a scene must be found to be compared with the library's.
-/// Throws io::Error if they are none that this program knows.
+/// Returns the parameters with which features of a scene must be found, so that they can be
+/// compared with those of the library. Throws io::Error if this program does not know the
+/// parameters.
 RecognitionParameters parameters_of(const io::HashLibrary& library);
 
-/// The least score of an object, if nobody says another. kThesis has none: its score is the size of
-/// a cluster, which grows with the number of features and tells what is there from what is not only
-/// beside that of other models.
+/// Returns the least score of an object if none is given. For kThesis it is 0: there a score is the
+/// size of a cluster, which grows with the number of features, and has a meaning only beside the
+/// scores of other models.
 double default_min_score(RecognitionMethod method);
 
-/// Throws io::Error on an unreadable or unusable scene, on a damaged library, if one of them has
-/// changed meanwhile, and when the output cannot be written. The bytes of the output do not depend
-/// on the number of threads.
+/// Writes the file. Throws io::Error if the scene cannot be read or used, if the library is
+/// damaged, if one of them has changed meanwhile, or if the output cannot be written. The bytes of
+/// the output do not depend on the number of threads.
 RecogniseJobResult run_recognise_job(const RecogniseJob& job, const SearchParameters& parameters,
                                      const engine::RunContext& context);
 

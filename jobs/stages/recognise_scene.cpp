@@ -3,109 +3,73 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 #include <tuple>
 #include <utility>
 
 #include "jobs/stages/match_triplets.hpp"
+#include "jobs/stages/pose_examiner.hpp"
 #include "kernels/recognition/feature_pair.hpp"
 #include "kernels/recognition/feature_triangle.hpp"
-#include "kernels/recognition/overlap.hpp"
-#include "kernels/recognition/pose_clusters.hpp"
 
 namespace semigeo::jobs {
 namespace {
 
-using Eigen::Vector3d;
 using kernels::RecognitionModel;
 using kernels::Similarity;
 
-/// A scene's feature may be a little out of the band that the model's is in.
-constexpr double kBandSlack = 1.075;
-/// Coarse scans and small pieces have few features: with fewer triplets pairs are looked for, too.
-constexpr std::int64_t kFewTriplets = 10'000;
-constexpr int kScenePairNeighbours = 16;
-constexpr double kPairWeight = 0.5;  ///< of a pair's vote: chance has it agree more often
-
-constexpr std::size_t kShortlist = 400;            ///< models with the best votes
-constexpr std::size_t kMostMatches = 8000;         ///< of one model, the weightiest;
-constexpr std::size_t kMatchesTogether = 600'000;  ///< if there are many models, fewer of each
-
-// Each look at a pose costs more than the one before, and fewer poses are looked at.
-constexpr std::int64_t kGlanceSamples = 40;
-constexpr std::size_t kGlanced = 40;  ///< of one model, go on
-constexpr std::size_t kFewModels = 40;
-constexpr int kFewClusters = 24;             ///< of each of more models than that; and of these
-constexpr std::size_t kModelsByGlance = 40;  ///< go on: those that look best,
-constexpr std::size_t kModelsByWeight = 30;  ///< and those of the heaviest clusters besides
-constexpr std::int64_t kCoarseSamples = 200;
-constexpr std::size_t kCoarseByWeight = 3;  ///< besides, whatever they look like
-constexpr std::int64_t kMiddleSamples = 400;
-struct Effort {
-  std::size_t coarse;    ///< poses of one model by overlap, are refined a little
-  std::size_t refined;   ///< of one model
-  std::size_t together;  ///< of all
-};
-constexpr Effort kUsual = {.coarse = 5, .refined = 4, .together = 60};
-constexpr Effort kOfPairs = {
-    .coarse = 8, .refined = 6, .together = 120};  // say little by themselves
-constexpr std::int64_t kFineSamples = 2000;
-constexpr std::int64_t kExplainedSamples = 4000;
-
-constexpr kernels::OverlapOptions kCoarse = {.match = 0.02, .conflict = 0.06, .min_cosine = 0.6};
-/// Noise and triangulation grow with the edges: of coarse scans the surfaces that are one lie
-/// farther apart. In mean edge lengths of the coarser one, and at most so many diagonals.
-constexpr double kMatchEdges = 0.5;
-constexpr double kWidestMatch = 0.03;
-constexpr double kHeld = 0.03;  ///< stability of which half is missing
-/// Poses tried turned: loosely, as turns are tried in steps.
-constexpr kernels::OverlapOptions kTurning = {.match = 0.03, .conflict = 0.06, .min_cosine = 0.6};
-constexpr std::size_t kTurnedTogether = 6;
-constexpr std::size_t kTurnedPerPose = 3;
-constexpr double kTurnedShare = 0.7;  ///< of the agreement before, to go on
-
-constexpr kernels::PoseTolerance kSupport = {.log_scale = 0.15, .distance = 0.06, .angle = 0.25};
-
-/// What a scene must enter to find what a model has.
+/// Returns the options with which features of a scene are combined, to find what a model has.
 template <typename Options>
-Options as_scene(Options options) {
-  options.nearest /= kBandSlack;
-  options.farthest *= kBandSlack;
+Options as_scene(Options options, double band_slack) {
+  options.nearest /= band_slack;
+  options.farthest *= band_slack;
   options.every_order = true;
   return options;
 }
 
-kernels::TripletOptions scene_triplets() {
-  kernels::TripletOptions options = as_scene(kernels::TripletOptions{});
-  options.min_height *= 0.9;
+kernels::TripletOptions scene_triplets(const LookUpTuning& tuning) {
+  kernels::TripletOptions options = as_scene(kernels::TripletOptions{}, tuning.band_slack);
+  options.min_height *= tuning.height_slack;
   return options;
 }
 
-kernels::PairOptions scene_pairs() {
-  return as_scene(kernels::PairOptions{.neighbours = kScenePairNeighbours});
+kernels::PairOptions scene_pairs(const RecognitionTuning& tuning) {
+  return as_scene(kernels::PairOptions{.neighbours = tuning.pairs.neighbours},
+                  tuning.look_up.band_slack);
 }
 
-/// A pose of a model, more and more closely looked at. Poses are from the model's own coordinates
-/// to the scene's, origins apart.
-struct Pose {
-  std::size_t listed = 0;  ///< in the shortlist
-  Similarity pose;
-  double cluster = 0;
-  double coarse = 0;
-  double support = 0;
-  kernels::Overlap overlap = {};
-  double explained = 0;
-  double score = 0;
-};
+/// Returns the poses that matches vote for. The matches of one part of the scene must lie side by
+/// side. A match shares its part with others of this model only: what agrees on a pose must not
+/// depend on how many models the library has. Of more than `most` matches the weightiest vote.
+template <typename Match, typename PartOf, typename PoseOf>
+kernels::PoseVotes votes_of(const std::vector<Match>& matches, const PartOf& part_of,
+                            const PoseOf& pose_of, const RecognitionModel& model,
+                            std::size_t most) {
+  struct Weighed {
+    double weight;
+    std::size_t match;
+  };
+  std::vector<Weighed> weighed;
+  weighed.reserve(matches.size());
+  for (auto first = matches.begin(); first != matches.end();) {
+    const auto last = std::find_if(first, matches.end(), [&](const Match& match) {
+      return part_of(match) != part_of(*first);
+    });
+    const double weight = 1.0 / static_cast<double>(last - first);
+    for (; first != last; ++first)
+      weighed.push_back({weight, static_cast<std::size_t>(first - matches.begin())});
+  }
+  if (weighed.size() > most) {
+    std::ranges::stable_sort(weighed, std::ranges::greater(), &Weighed::weight);
+    weighed.resize(most);
+    std::ranges::sort(weighed, {}, &Weighed::match);
+  }
+  std::vector<kernels::PoseVote> result;
+  result.reserve(weighed.size());
+  for (const auto& [weight, match] : weighed) result.push_back({pose_of(matches[match]), weight});
+  return {result, model.centre.cast<double>(), model.diagonal};
+}
 
-struct Listed {
-  std::int64_t model = 0;
-  RecognitionModel record;
-  kernels::PoseVotes votes;  ///< of triplets
-  std::optional<kernels::SampleTree> tree;
-  std::vector<Pose> poses;
-};
-
+/// Recognises one scene. A Recogniser is used once.
 class Recogniser {
  public:
   Recogniser(const io::HashLibrary& library, const RecognitionModel& scene,
@@ -113,31 +77,33 @@ class Recogniser {
       : library_(library),
         scene_(scene),
         options_(options),
+        tuning_(options.tuning),
         context_(context),
-        tree_(scene.samples) {}
+        examiner_(scene, options.tuning) {}
 
   Recognition run() {
-    const std::vector<kernels::Triplet> triplets =
-        kernels::local_triplets(scene_.features, scene_triplets());
-    matches_ = match_triplets(library_, triplets, {}, context_);
-    result_.scene_triplets = matches_.scene_triplets;
-    result_.matches = static_cast<std::int64_t>(matches_.matches.size());
-    if (result_.scene_triplets < kFewTriplets)
-      pairs_ = kernels::local_pairs(scene_.features, scene_pairs());
+    look_up();
     shortlist();
-    for_each(shortlist_.size(), [this](std::size_t i) { find_poses(i); });
+    for_each(shortlist_.size(), [this](std::size_t i) {
+      find_poses(i);
+      examiner_.glance(shortlist_[i]);
+    });
     choose_models();
-    for_each(shortlist_.size(), [this](std::size_t i) { look_closer(shortlist_[i]); });
+    for_each(shortlist_.size(),
+             [this](std::size_t i) { examiner_.look_closer(shortlist_[i], effort()); });
     choose_poses();
-    for_each(poses_.size(), [this](std::size_t i) { verify(poses_[i]); });
-    try_turned();
+    for_each(poses_.size(),
+             [this](std::size_t i) { examiner_.verify(shortlist_[poses_[i].listed], poses_[i]); });
+    try_symmetric_poses();
     rank();
     find_objects();
     return std::move(result_);
   }
 
  private:
-  const Effort& effort() const { return pairs_.empty() ? kUsual : kOfPairs; }
+  const RefinementEffort& effort() const {
+    return pairs_.empty() ? tuning_.refinement.usual : tuning_.refinement.of_pairs;
+  }
 
   template <typename Body>
   void for_each(std::size_t count, const Body& body) {
@@ -146,8 +112,19 @@ class Recogniser {
     });
   }
 
-  /// Models that got votes, those first that got the most beyond what chance gives a model with so
-  /// many triplets, in standard deviations. Those without votes may have pairs.
+  /// Matches triplets of the scene with the library, and makes pairs if there are few of them.
+  void look_up() {
+    const std::vector<kernels::Triplet> triplets =
+        kernels::local_triplets(scene_.features, scene_triplets(tuning_.look_up));
+    matches_ = match_triplets(library_, triplets, tuning_.look_up, context_);
+    result_.scene_triplets = matches_.scene_triplets;
+    result_.matches = static_cast<std::int64_t>(matches_.matches.size());
+    if (result_.scene_triplets < tuning_.pairs.few_triplets)
+      pairs_ = kernels::local_pairs(scene_.features, scene_pairs(tuning_));
+  }
+
+  /// Lists models that got votes. Those come first that got the most beyond what chance gives a
+  /// model with so many triplets, in standard deviations. Models without votes may have pairs.
   void shortlist() {
     const std::vector<io::ModelInfo>& models = library_.models();
     const double votes = std::accumulate(matches_.votes.begin(), matches_.votes.end(), 0.0);
@@ -162,18 +139,18 @@ class Recogniser {
     }
     std::ranges::stable_sort(order, std::ranges::greater(),
                              [&](std::int64_t i) { return surplus[i]; });
-    order.resize(std::min(order.size(), kShortlist));
+    order.resize(std::min(order.size(), tuning_.shortlist.most_models));
     shortlist_.resize(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) shortlist_[i].model = order[i];
   }
 
-  void find_poses(std::size_t index) {
-    Listed& listed = shortlist_[index];
-    listed.record = library_.read_model(listed.model);
-    const RecognitionModel& model = listed.record;
+  /// Returns the weightiest matches of a listed model, those of one triangle side by side.
+  std::vector<TripletMatch> matches_of(const ListedModel& listed) const {
     std::vector<TripletMatch> matches(matches_.matches.begin() + matches_.first[listed.model],
                                       matches_.matches.begin() + matches_.first[listed.model + 1]);
-    const std::size_t most = std::min(kMostMatches, kMatchesTogether / shortlist_.size());
+    const ShortlistTuning& tuning = tuning_.shortlist;
+    const std::size_t most =
+        std::min(tuning.most_matches, tuning.most_matches_together / shortlist_.size());
     if (matches.size() > most) {
       const auto heavier = [](const TripletMatch& a, const TripletMatch& b) {
         return std::tie(b.weight, a.triangle, a.model_corners) <
@@ -185,240 +162,94 @@ class Recogniser {
       std::ranges::sort(matches, heavier);
     }
     std::ranges::stable_sort(matches, {}, &TripletMatch::triangle);
-    listed.votes = votes(
-        matches, [](const TripletMatch& match) { return match.triangle; },
+    return matches;
+  }
+
+  /// Finds the poses on which triplets of the listed model agree, and those on which pairs do.
+  void find_poses(std::size_t index) {
+    ListedModel& listed = shortlist_[index];
+    listed.record = library_.read_model(listed.model);
+    const RecognitionModel& model = listed.record;
+    listed.votes = votes_of(
+        matches_of(listed), [](const TripletMatch& match) { return match.triangle; },
         [&](const TripletMatch& match) {
           return kernels::similarity_between(
               kernels::feature_triangle(model.features, match.model_corners),
               kernels::feature_triangle(scene_.features, match.scene_corners));
         },
-        model);
+        model, tuning_.shortlist.most_matches);
     add_clusters(listed.votes, 1, index);
-    if (!pairs_.empty() && index < kFewModels) {
-      const std::vector<kernels::FeaturePair> pairs = kernels::local_pairs(model.features, {});
-      const kernels::PoseVotes of_pairs = votes(
-          kernels::match_pairs(pairs_, pairs), [](const kernels::PairMatch& m) { return m.scene; },
-          [&](const kernels::PairMatch& m) {
-            return kernels::similarity_between(pairs[m.model], pairs_[m.scene]);
-          },
-          model);
-      add_clusters(of_pairs, kPairWeight, index);
-    }
-    look(listed, kGlanceSamples, coarse);
-    keep(listed.poses, kGlanced, kCoarseByWeight);
-  }
-
-  /// The poses that matches, those of one part of the scene side by side, vote for. A match shares
-  /// its part with others of this model only: what agrees on a pose must not depend on how many
-  /// models the library has.
-  template <typename Match, typename PartOf, typename PoseOf>
-  static kernels::PoseVotes votes(const std::vector<Match>& matches, const PartOf& part_of,
-                                  const PoseOf& pose_of, const RecognitionModel& model) {
-    struct Weighed {
-      double weight;
-      std::size_t match;
-    };
-    std::vector<Weighed> weighed;
-    weighed.reserve(matches.size());
-    for (auto first = matches.begin(); first != matches.end();) {
-      const auto last = std::find_if(first, matches.end(), [&](const Match& match) {
-        return part_of(match) != part_of(*first);
-      });
-      const double weight = 1.0 / static_cast<double>(last - first);
-      for (; first != last; ++first)
-        weighed.push_back({weight, static_cast<std::size_t>(first - matches.begin())});
-    }
-    if (weighed.size() > kMostMatches) {
-      std::ranges::stable_sort(weighed, std::ranges::greater(), &Weighed::weight);
-      weighed.resize(kMostMatches);
-      std::ranges::sort(weighed, {}, &Weighed::match);
-    }
-    std::vector<kernels::PoseVote> result;
-    result.reserve(weighed.size());
-    for (const auto& [weight, match] : weighed) result.push_back({pose_of(matches[match]), weight});
-    return {result, model.centre.cast<double>(), model.diagonal};
+    if (pairs_.empty() || index >= tuning_.pairs.most_models) return;
+    const std::vector<kernels::FeaturePair> pairs = kernels::local_pairs(model.features, {});
+    const kernels::PoseVotes of_pairs = votes_of(
+        kernels::match_pairs(pairs_, pairs), [](const kernels::PairMatch& m) { return m.scene; },
+        [&](const kernels::PairMatch& m) {
+          return kernels::similarity_between(pairs[m.model], pairs_[m.scene]);
+        },
+        model, tuning_.shortlist.most_matches);
+    add_clusters(of_pairs, tuning_.pairs.vote_weight, index);
   }
 
   void add_clusters(const kernels::PoseVotes& votes, double weight, std::size_t index) {
+    const ClusterTuning& tuning = tuning_.clusters;
     kernels::ClusterOptions options;
-    if (shortlist_.size() > kFewModels) options = {.seeds = 4 * kFewClusters, .most = kFewClusters};
+    if (shortlist_.size() > tuning.few_models)
+      options = {.seeds = tuning.seeds_of_many, .most = tuning.most_of_many};
     for (const kernels::PoseCluster& cluster : votes.clusters(options))
       shortlist_[index].poses.push_back(
           {.listed = index, .pose = cluster.pose, .cluster = weight * cluster.weight});
   }
 
-  /// Of many models only those that are worth a closer look.
+  /// Leaves the poses of those models only that are worth a closer look, if there are many.
   void choose_models() {
-    if (shortlist_.size() <= kModelsByGlance + kModelsByWeight) return;
-    const auto most = [](const Listed& listed, double Pose::*value) {
+    const std::size_t by_overlap = tuning_.glances.models_by_overlap;
+    const std::size_t chosen = by_overlap + tuning_.glances.models_by_weight;
+    if (shortlist_.size() <= chosen) return;
+    const auto most = [](const ListedModel& listed, double ExaminedPose::*value) {
       double best = 0;
-      for (const Pose& pose : listed.poses) best = std::max(best, pose.*value);
+      for (const ExaminedPose& pose : listed.poses) best = std::max(best, pose.*value);
       return best;
     };
     std::vector<std::size_t> order(shortlist_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto sort_by = [&](std::size_t first, double Pose::*value) {
+    const auto sort_by = [&](std::size_t first, double ExaminedPose::*value) {
       std::stable_sort(order.begin() + static_cast<std::ptrdiff_t>(first), order.end(),
                        [&](std::size_t a, std::size_t b) {
                          return most(shortlist_[a], value) > most(shortlist_[b], value);
                        });
     };
-    sort_by(0, &Pose::coarse);
-    sort_by(kModelsByGlance, &Pose::cluster);
-    for (std::size_t i = kModelsByGlance + kModelsByWeight; i < order.size(); ++i)
-      shortlist_[order[i]].poses.clear();
+    sort_by(0, &ExaminedPose::agreement);
+    sort_by(by_overlap, &ExaminedPose::cluster);
+    for (std::size_t i = chosen; i < order.size(); ++i) shortlist_[order[i]].poses.clear();
   }
 
-  void look_closer(Listed& listed) {
-    const RecognitionModel& model = listed.record;
-    look(listed, kCoarseSamples, coarse);
-    keep(listed.poses, effort().coarse, kCoarseByWeight);
-    for (Pose& pose : listed.poses) approach(pose);
-    leave_out_repeated(listed);
-    look(listed, kMiddleSamples, [&](const Pose& pose) { return close(model, pose.pose); });
-    keep(listed.poses, effort().refined, 0);
-  }
-
-  /// From as far as clusters of votes may lie.
-  void approach(Pose& pose) const {
-    const RecognitionModel& model = shortlist_[pose.listed].record;
-    pose.pose = kernels::refined(model.samples, model.diagonal, pose.pose, tree_,
-                                 {.reach = {0.08, 0.05}, .iterations = 3, .count = 200});
-  }
-
-  /// As close as a pose of the model can be expected to lie.
-  kernels::OverlapOptions close(const RecognitionModel& model, const Similarity& pose) const {
-    kernels::OverlapOptions result;
-    const std::vector<float>& of_scene = scene_.features.level_scale;
-    const std::vector<float>& of_model = model.features.level_scale;
-    if (of_scene.empty() || of_model.empty()) return result;
-    const double edge = std::max<double>(of_scene.front(), of_model.front() * pose.scale);
-    result.match =
-        std::clamp(kMatchEdges * edge / (model.diagonal * pose.scale), result.match, kWidestMatch);
-    return result;
-  }
-
-  static kernels::OverlapOptions coarse(const Pose& /*pose*/) { return kCoarse; }
-
-  template <typename OptionsOf>
-  void look(Listed& listed, std::int64_t samples, const OptionsOf& options_of) const {
-    const RecognitionModel& model = listed.record;
-    for (Pose& pose : listed.poses)
-      pose.coarse = kernels::overlap(model.samples, model.diagonal, pose.pose, tree_,
-                                     options_of(pose), samples)
-                        .agreement();
-  }
-
-  /// The best by overlap, and the heaviest clusters of the rest.
-  static void keep(std::vector<Pose>& poses, std::size_t by_overlap, std::size_t by_weight) {
-    std::ranges::stable_sort(poses, std::ranges::greater(), &Pose::coarse);
-    if (poses.size() > by_overlap)
-      std::stable_sort(poses.begin() + static_cast<std::ptrdiff_t>(by_overlap), poses.end(),
-                       [](const Pose& a, const Pose& b) { return a.cluster > b.cluster; });
-    poses.resize(std::min(poses.size(), by_overlap + by_weight));
-  }
-
-  /// Of poses that have become one, the first stays.
-  static void leave_out_repeated(Listed& listed) {
-    const RecognitionModel& model = listed.record;
-    const Vector3d centre = model.centre.cast<double>();
-    std::vector<Pose> different;
-    for (const Pose& pose : listed.poses)
-      if (std::ranges::none_of(different, [&](const Pose& d) {
-            return std::abs(std::log(d.pose.scale / pose.pose.scale)) < 0.03 &&
-                   (d.pose.apply(centre) - pose.pose.apply(centre)).norm() <
-                       0.02 * model.diagonal * pose.pose.scale &&
-                   kernels::rotation_between(d.pose.rotation, pose.pose.rotation) < 0.06;
-          }))
-        different.push_back(pose);
-    listed.poses = std::move(different);
-  }
-
+  /// Chooses the poses of all models that are refined.
   void choose_poses() {
-    for (Listed& listed : shortlist_)
+    for (ListedModel& listed : shortlist_)
       poses_.insert(poses_.end(), listed.poses.begin(), listed.poses.end());
-    std::ranges::stable_sort(poses_, std::ranges::greater(), &Pose::coarse);
+    std::ranges::stable_sort(poses_, std::ranges::greater(), &ExaminedPose::agreement);
     poses_.resize(std::min(poses_.size(), effort().together));
     std::vector<std::uint8_t> wanted(shortlist_.size());
-    for (const Pose& pose : poses_) wanted[pose.listed] = 1;
+    for (const ExaminedPose& pose : poses_) wanted[pose.listed] = 1;
     for_each(shortlist_.size(), [&](std::size_t i) {
       if (wanted[i] != 0) shortlist_[i].tree.emplace(shortlist_[i].record.samples);
     });
   }
 
-  void verify(Pose& pose) const {
-    const RecognitionModel& model = shortlist_[pose.listed].record;
-    pose.pose = kernels::refined(model.samples, model.diagonal, pose.pose, tree_,
-                                 {.reach = {0.03, 0.015, 0.01, 0.008}});
-    pose.support = shortlist_[pose.listed].votes.support(pose.pose, kSupport);
-    measure(pose, {});
-  }
-
-  /// A cup may have been found with its handle anywhere: the best poses are tried turned, as far as
-  /// the model is nearly symmetric.
-  void try_turned() {
-    std::ranges::stable_sort(poses_, std::ranges::greater(), &Pose::score);
-    std::vector<std::vector<Pose>> better(std::min(kTurnedTogether, poses_.size()));
-    for_each(better.size(), [&](std::size_t i) { better[i] = better_turned(poses_[i]); });
-    for (const std::vector<Pose>& of_pose : better)
+  /// Adds better poses of models that are nearly symmetric.
+  void try_symmetric_poses() {
+    std::ranges::stable_sort(poses_, std::ranges::greater(), &ExaminedPose::score);
+    std::vector<std::vector<ExaminedPose>> better(
+        std::min(tuning_.symmetric_poses.tried, poses_.size()));
+    for_each(better.size(), [&](std::size_t i) {
+      better[i] = examiner_.better_symmetric_poses(shortlist_[poses_[i].listed], poses_[i]);
+    });
+    for (const std::vector<ExaminedPose>& of_pose : better)
       poses_.insert(poses_.end(), of_pose.begin(), of_pose.end());
   }
 
-  std::vector<Pose> better_turned(const Pose& pose) const {
-    const RecognitionModel& model = shortlist_[pose.listed].record;
-    const auto glance = [&](const Similarity& similarity) {
-      return kernels::overlap(model.samples, model.diagonal, similarity, tree_, kTurning,
-                              kCoarseSamples)
-          .agreement();
-    };
-    const double enough = kTurnedShare * glance(pose.pose);
-    std::vector<Pose> tried;
-    for (const Similarity& other : kernels::turned(model.samples, model.diagonal, pose.pose, tree_,
-                                                   close(model, pose.pose), kFineSamples))
-      if (const double coarse = glance(other); coarse > enough)
-        tried.push_back(
-            {.listed = pose.listed, .pose = other, .cluster = pose.cluster, .coarse = coarse});
-    keep(tried, kTurnedPerPose, 0);
-    for (Pose& other : tried) {
-      approach(other);
-      verify(other);
-    }
-    std::erase_if(tried, [&](const Pose& other) { return other.score <= pose.score; });
-    return tried;
-  }
-
-  /// Against what of the scene is not used up yet.
-  void measure(Pose& pose, std::span<const std::uint8_t> used) const {
-    const Listed& listed = shortlist_[pose.listed];
-    const RecognitionModel& model = listed.record;
-    kernels::OverlapOptions options = close(model, pose.pose);
-    options.stability = true;
-    pose.overlap = kernels::overlap(model.samples, model.diagonal, pose.pose, tree_, options,
-                                    kFineSamples, used);
-    const auto marks = kernels::explained(*listed.tree, model.diagonal, pose.pose, scene_.samples,
-                                          options, kExplainedSamples, used);
-    pose.explained = static_cast<double>(std::ranges::count(marks, 1)) /
-                     static_cast<double>(std::max<std::size_t>(marks.size(), 1));
-    pose.score = score_of(pose);
-  }
-
-  /// Measured on thousands of right and wrong poses: most of all a right one lies close, is not
-  /// contradicted, and is held fast by what matches; how much of model and scene match says less,
-  /// as either may be a small part of the other, but not both. A pose that surfaces alone speak for
-  /// is worth a little less than one that triplets want, too.
-  static double score_of(const Pose& pose) {
-    const kernels::Overlap& o = pose.overlap;
-    if (o.match <= 0) return 0;
-    const double unopposed = o.match / (o.match + o.conflict);
-    const double either = o.match + pose.explained - o.match * pose.explained;
-    const double wanted = (10 + pose.support) / (20 + pose.support);
-    const double held = o.stability / (o.stability + kHeld);
-    return std::sqrt(o.match * either) * std::pow(held, 0.75) * std::pow(unopposed, 1.5) *
-           std::pow(o.closeness, 8) * std::pow(pose.explained * wanted, 0.25);
-  }
-
-  Candidate candidate_of(const Pose& pose) const {
-    const Listed& listed = shortlist_[pose.listed];
+  Candidate candidate_of(const ExaminedPose& pose) const {
+    const ListedModel& listed = shortlist_[pose.listed];
     Candidate candidate;
     candidate.model = listed.model;
     candidate.votes = matches_.votes[listed.model];
@@ -436,43 +267,47 @@ class Recogniser {
     return candidate;
   }
 
+  /// Ranks models by their best poses.
   void rank() {
-    std::ranges::stable_sort(poses_, std::ranges::greater(), &Pose::score);
+    std::ranges::stable_sort(poses_, std::ranges::greater(), &ExaminedPose::score);
     std::vector<std::uint8_t> seen(shortlist_.size());
-    for (const Pose& pose : poses_)
+    for (const ExaminedPose& pose : poses_)
       if (std::exchange(seen[pose.listed], 1) == 0) result_.ranking.push_back(candidate_of(pose));
   }
 
-  /// The best first; then the best on what it leaves unexplained, and so on.
+  /// Finds the best object, then the best one on what of the scene the first leaves, and so on.
   void find_objects() {
     std::vector<std::uint8_t> used(scene_.samples.points.size());
-    std::vector<Pose> left = poses_;
+    std::vector<ExaminedPose> left = poses_;
     while (true) {
-      std::erase_if(left, [this](const Pose& pose) { return pose.score < options_.min_score; });
+      std::erase_if(left,
+                    [this](const ExaminedPose& pose) { return pose.score < options_.min_score; });
       if (left.empty() || left.front().score <= 0) return;
-      const Pose best = left.front();
+      const ExaminedPose best = left.front();
       result_.objects.push_back(candidate_of(best));
-      const Listed& listed = shortlist_[best.listed];
-      // A little more than what matches: rims of what is explained are nobody else's.
-      const auto marks = kernels::explained(*listed.tree, listed.record.diagonal, best.pose,
-                                            scene_.samples, {.match = 0.02, .min_cosine = 0.3},
-                                            static_cast<std::int64_t>(used.size()));
+      const ListedModel& listed = shortlist_[best.listed];
+      const auto marks =
+          kernels::explained(*listed.tree, listed.record.diagonal, best.pose, scene_.samples,
+                             tuning_.objects.used, static_cast<std::int64_t>(used.size()));
       for (std::size_t i = 0; i < marks.size(); ++i) used[i] |= marks[i];
       left.erase(left.begin());
-      for_each(left.size(), [&](std::size_t i) { measure(left[i], used); });
-      std::ranges::stable_sort(left, std::ranges::greater(), &Pose::score);
+      for_each(left.size(), [&](std::size_t i) {
+        examiner_.measure(shortlist_[left[i].listed], left[i], used);
+      });
+      std::ranges::stable_sort(left, std::ranges::greater(), &ExaminedPose::score);
     }
   }
 
   const io::HashLibrary& library_;
   const RecognitionModel& scene_;
   const RecognitionOptions& options_;
+  const RecognitionTuning& tuning_;
   const engine::RunContext& context_;
-  kernels::SampleTree tree_;
+  PoseExaminer examiner_;
   TripletMatches matches_;
-  std::vector<kernels::FeaturePair> pairs_;  ///< of the scene, if it has few triplets
-  std::vector<Listed> shortlist_;
-  std::vector<Pose> poses_;
+  std::vector<kernels::FeaturePair> pairs_;  ///< Pairs of the scene, if it has few triplets.
+  std::vector<ListedModel> shortlist_;
+  std::vector<ExaminedPose> poses_;
   Recognition result_;
 };
 

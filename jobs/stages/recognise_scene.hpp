@@ -6,38 +6,44 @@
 
 #include "engine/run_context.hpp"
 #include "io/library/hash_library.hpp"
+#include "jobs/stages/recognition_tuning.hpp"
 #include "kernels/recognition/recognition_model.hpp"
 #include "kernels/recognition/similarity.hpp"
 
 namespace semigeo::jobs {
 
+/// How models are found in a scene.
 struct RecognitionOptions {
-  double min_score = 0.15;  ///< below it a model is not in the scene; see bench/RECOGNITION.md
+  double min_score = 0.15;  ///< A model with less is not in the scene: see bench/RECOGNITION.md.
+  RecognitionTuning tuning = {};
 };
 
-/// A model and where it seems to be.
+/// A model and the pose in which it may be in the scene.
 struct Candidate {
-  std::int64_t model = 0;  ///< of HashLibrary::models
-  double votes = 0;        ///< of scene triplets, each shared among what it matches
-  double cluster = 0;      ///< weight of the matches that agree on this pose, as it was found
-  double support = 0;      ///< and as it is now
-  double match = 0;        ///< share of the model's surface that lies on the scene's
-  double conflict = 0;     ///< share near the scene's surface that disagrees with it
-  double closeness = 0;    ///< of what matches: 1 on the scene's surface, 0 at the tolerance
-  double stability = 0;    ///< how firmly what matches holds the model: kernels::Overlap
-  double explained = 0;    ///< share of the scene's surface that lies on the model's
-  double score = 0;
-  kernels::Similarity pose;  ///< model to scene, in coordinates of the files
+  std::int64_t model = 0;  ///< Index in HashLibrary::models.
+  double votes = 0;      ///< Votes of the scene's triplets; each vote is shared among its matches.
+  double cluster = 0;    ///< Weight of the matches that agree on the pose as it was found.
+  double support = 0;    ///< Weight of the matches that agree on the refined pose.
+  double match = 0;      ///< Share of the model's surface that lies on the scene's.
+  double conflict = 0;   ///< Share of the model near the scene's surface that contradicts it.
+  double closeness = 0;  ///< How close what matches lies: 1 on the surface, 0 at the tolerance.
+  double stability = 0;  ///< How firmly what matches holds the model: kernels::Overlap.
+  double explained = 0;  ///< Share of the scene's surface that lies on the model's.
+  double score = 0;      ///< What counts: see ScoreWeights.
+  kernels::Similarity pose;  ///< Leads from the model to the scene, in coordinates of the files.
 };
 
+/// What was found in a scene.
 struct Recognition {
-  std::vector<Candidate> ranking;  ///< the best pose of each model that was verified, best first
-  std::vector<Candidate> objects;  ///< what is in the scene, in the order in which it was found
-  std::int64_t scene_triplets = 0;
-  std::int64_t matches = 0;
+  std::vector<Candidate> ranking;   ///< The best pose of each verified model, best first.
+  std::vector<Candidate> objects;   ///< What is in the scene, in the order in which it was found.
+  std::int64_t scene_triplets = 0;  ///< Number of triplets of the scene.
+  std::int64_t matches = 0;         ///< Number of matches of triplets.
 };
 
 /// Finds models of a library in a scene. The result does not depend on the number of threads.
+/// Throws io::Error if the library cannot be read. Source: thesis 4.5, 4.6. Differs: poses are
+/// judged by how surfaces overlap, not by triplets alone.
 Recognition recognise_scene(const io::HashLibrary& library, const kernels::RecognitionModel& scene,
                             const RecognitionOptions& options, const engine::RunContext& context);
 

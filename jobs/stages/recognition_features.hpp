@@ -8,14 +8,14 @@
 
 namespace semigeo::jobs {
 
-/// Features on octave levels, without rescaling, and samples of a built surface. The surface need
-/// not be ordered.
+/// Returns the features of a built surface on octave levels without rescaling, and samples of the
+/// surface. The surface need not be ordered. The result does not depend on the number of threads.
 kernels::RecognitionModel recognition_model(const kernels::BuiltSurface& built,
                                             const RecognitionParameters& parameters,
                                             const engine::RunContext& context);
 
-/// The same of a dataset: its own features if it was made with octave levels, without rescaling and
-/// with as many levels; otherwise its level 0 is evolved anew.
+/// Returns the features and samples of a dataset. The features are its own if it has as many octave
+/// levels; otherwise its level 0 is evolved anew. Throws io::Error if the dataset cannot be read.
 kernels::RecognitionModel recognition_model(const io::Dataset& dataset,
                                             const RecognitionParameters& parameters,
                                             const engine::RunContext& context);

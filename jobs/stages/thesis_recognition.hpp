@@ -12,36 +12,41 @@
 
 namespace semigeo::jobs {
 
-// Recognition as the thesis has it (4.5, 4.6, 5.9, 5.10), to compare with: all triplets of the
-// strongest features in four hash tables, votes, clusters of poses. It looks at no surface.
+// Recognition as in the thesis (4.5, 4.6, 5.9, 5.10), to compare with: all triplets of the
+// strongest features in four hash tables, votes, clusters of poses. Surfaces are not compared.
 
+/// How the thesis finds models.
 struct ThesisRecognitionOptions {
   kernels::ThesisOptions hash;
-  int level = 1;           ///< of models and scene; the thesis picks one for each (5.8)
-  double survivors = 0.6;  ///< of the best score: models with less are not verified. Between 0.6
-                           ///< and 0.7 in the tables of 6.4
+  int level = 1;  ///< Level of models and scene; the thesis picks one for each (5.8).
+  /// Models with less than this share of the best score are not verified. It is between 0.6 and 0.7
+  /// in the tables of 6.4.
+  double survivors = 0.6;
   kernels::PoseTolerance clusters;
 };
 
-/// What the thesis' tables say of a model.
+/// The score of a model, as in the tables of the thesis.
 struct ThesisScore {
-  std::array<double, kernels::kFeatureKinds> of_kind = {};  ///< thesis_score of each table
-  double total = 0;                                         ///< their mean
-  bool survives = false;                                    ///< the rest is of survivors only
-  std::int64_t matches = 0;                                 ///< of all kinds
-  std::int64_t cluster = 0;                                 ///< members of the largest
-  kernels::Similarity pose;  ///< of that, model to scene, in coordinates of the files
+  std::array<double, kernels::kFeatureKinds> of_kind = {};  ///< thesis_score of each table.
+  double total = 0;                                         ///< Mean of `of_kind`.
+  bool survives = false;     ///< The members below are set for survivors only.
+  std::int64_t matches = 0;  ///< Number of matches of all kinds.
+  std::int64_t cluster = 0;  ///< Number of members of the largest cluster.
+  kernels::Similarity
+      pose;  ///< Pose of that cluster, from model to scene, in coordinates of the files.
 };
 
-/// The four hash tables of a library, in memory: 40 bytes a triplet, of 9,880 a model and kind at
-/// most. The library should have features of torsion; kinds without features score 0.
+/// The four hash tables of a library, in memory. A triplet takes 40 bytes; a model has at most
+/// 9,880 triplets of each kind. The library should have features of torsion; kinds without features
+/// score 0.
 class ThesisDatabase {
  public:
-  /// Reads every model. Throws io::Error.
+  /// Reads every model. Throws io::Error if the library cannot be read.
   ThesisDatabase(const io::HashLibrary& library, const ThesisRecognitionOptions& options,
                  const engine::RunContext& context);
 
-  /// In the order of the library's models. The result does not depend on the number of threads.
+  /// Returns the scores in the order of the library's models. The result does not depend on the
+  /// number of threads.
   std::vector<ThesisScore> scores(const kernels::RecognitionModel& scene) const;
 
  private:
@@ -53,16 +58,18 @@ class ThesisDatabase {
   ThesisRecognitionOptions options_;
   const engine::RunContext& context_;
   std::vector<kernels::RecognitionModel> models_;
-  std::vector<std::array<std::int64_t, kernels::kFeatureKinds>> counts_;  ///< chosen features
-  std::vector<kernels::ThesisTable> tables_;                              ///< of each kind
+  std::vector<std::array<std::int64_t, kernels::kFeatureKinds>>
+      counts_;                                ///< Number of chosen features.
+  std::vector<kernels::ThesisTable> tables_;  ///< One table for each kind.
 };
 
-/// As recognise_scene gives it: survivors by their largest cluster, which is their score, then the
-/// others by the score of their votes. The thesis names one model: the first, if its cluster has
-/// `min_score` members.
+/// Returns the scores in the form of recognise_scene. Survivors come first, by the size of their
+/// largest cluster, which is their score; the others follow by the score of their votes. One model
+/// is named, as in the thesis: the first, if its cluster has at least `min_score` members.
 Recognition ranked(const std::vector<ThesisScore>& scores, const RecognitionOptions& options);
 
-/// All of it, with the defaults. Builds the database anew.
+/// Recognises a scene with the default options. It builds the database anew each time. Throws
+/// io::Error if the library cannot be read.
 Recognition thesis_recognition(const io::HashLibrary& library,
                                const kernels::RecognitionModel& scene,
                                const RecognitionOptions& options,

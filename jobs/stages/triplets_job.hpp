@@ -10,23 +10,24 @@
 
 namespace semigeo::jobs {
 
-/// Dataset in, run (io/library/triplet_run.hpp) out.
+/// A job that reads a dataset and writes the run of a model (io/library/triplet_run.hpp).
 struct TripletsJob {
   std::filesystem::path dataset;
-  std::string name;  ///< of the model
+  std::string name;  ///< Name of the model.
   std::filesystem::path output;
-  /// From the key of the dataset that is read, a hash of everything the run depends on.
+  /// Takes the key of the dataset and returns the hash of everything that the run depends on.
   std::function<std::string(const std::string&)> key_of;
 };
 
+/// What a triplets job made.
 struct TripletsJobResult {
   std::int64_t features = 0;
   std::int64_t samples = 0;
   std::int64_t triplets = 0;
 };
 
-/// Throws io::Error on a dataset that cannot be read and when the run cannot be written. The result
-/// does not depend on the number of threads.
+/// Writes the run. Throws io::Error if the dataset cannot be read or the run cannot be written. The
+/// result does not depend on the number of threads.
 TripletsJobResult run_triplets_job(const TripletsJob& job, const RecognitionParameters& parameters,
                                    const engine::RunContext& context);
 

@@ -1,0 +1,153 @@
+#include "jobs/stages/pose_examiner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+namespace semigeo::jobs {
+namespace {
+
+using Eigen::Vector3d;
+using kernels::RecognitionModel;
+using kernels::Similarity;
+
+/// Keeps the poses with the best agreement, and the heaviest clusters of the rest.
+void keep(std::vector<ExaminedPose>& poses, std::size_t by_overlap, std::size_t by_weight) {
+  std::ranges::stable_sort(poses, std::ranges::greater(), &ExaminedPose::agreement);
+  if (poses.size() > by_overlap)
+    std::stable_sort(
+        poses.begin() + static_cast<std::ptrdiff_t>(by_overlap), poses.end(),
+        [](const ExaminedPose& a, const ExaminedPose& b) { return a.cluster > b.cluster; });
+  poses.resize(std::min(poses.size(), by_overlap + by_weight));
+}
+
+}  // namespace
+
+double score_of(const ExaminedPose& pose, const ScoreWeights& weights) {
+  const kernels::Overlap& o = pose.overlap;
+  if (o.match <= 0) return 0;
+  const double unopposed = o.match / (o.match + o.conflict);
+  const double either = o.match + pose.explained - o.match * pose.explained;
+  const double wanted =
+      (weights.prior_support + pose.support) / (2 * weights.prior_support + pose.support);
+  const double held = o.stability / (o.stability + weights.half_held);
+  return std::sqrt(o.match * either) * std::pow(held, weights.held) *
+         std::pow(unopposed, weights.unopposed) * std::pow(o.closeness, weights.closeness) *
+         std::pow(pose.explained * wanted, weights.explained);
+}
+
+PoseExaminer::PoseExaminer(const RecognitionModel& scene, const RecognitionTuning& tuning)
+    : scene_(scene), tuning_(tuning), tree_(scene.samples) {}
+
+void PoseExaminer::glance(ListedModel& listed) const {
+  for (ExaminedPose& pose : listed.poses)
+    pose.agreement = agreement(listed.record, pose.pose, tuning_.refinement.coarse_overlap,
+                               tuning_.glances.samples);
+  keep(listed.poses, tuning_.glances.poses_by_overlap, tuning_.glances.poses_by_weight);
+}
+
+void PoseExaminer::look_closer(ListedModel& listed, const RefinementEffort& effort) const {
+  const RecognitionModel& model = listed.record;
+  const RefinementTuning& tuning = tuning_.refinement;
+  for (ExaminedPose& pose : listed.poses)
+    pose.agreement = agreement(model, pose.pose, tuning.coarse_overlap, tuning.coarse_samples);
+  keep(listed.poses, effort.coarse, tuning.poses_by_weight);
+  for (ExaminedPose& pose : listed.poses) refine_roughly(listed, pose);
+  leave_out_repeated(listed);
+  for (ExaminedPose& pose : listed.poses)
+    pose.agreement =
+        agreement(model, pose.pose, close_overlap(model, pose.pose), tuning.middle_samples);
+  keep(listed.poses, effort.refined, 0);
+}
+
+void PoseExaminer::verify(const ListedModel& listed, ExaminedPose& pose) const {
+  const RecognitionModel& model = listed.record;
+  pose.pose =
+      kernels::refined(model.samples, model.diagonal, pose.pose, tree_, tuning_.refinement.fine);
+  pose.support = listed.votes.support(pose.pose, tuning_.clusters.support);
+  measure(listed, pose, {});
+}
+
+void PoseExaminer::measure(const ListedModel& listed, ExaminedPose& pose,
+                           std::span<const std::uint8_t> used) const {
+  const RecognitionModel& model = listed.record;
+  const MeasurementTuning& tuning = tuning_.measurement;
+  kernels::OverlapOptions options = close_overlap(model, pose.pose);
+  options.stability = true;
+  pose.overlap = kernels::overlap(model.samples, model.diagonal, pose.pose, tree_, options,
+                                  tuning.model_samples, used);
+  const auto marks = kernels::explained(*listed.tree, model.diagonal, pose.pose, scene_.samples,
+                                        options, tuning.scene_samples, used);
+  pose.explained = static_cast<double>(std::ranges::count(marks, 1)) /
+                   static_cast<double>(std::max<std::size_t>(marks.size(), 1));
+  pose.score = score_of(pose, tuning_.score);
+}
+
+std::vector<ExaminedPose> PoseExaminer::better_symmetric_poses(const ListedModel& listed,
+                                                               const ExaminedPose& pose) const {
+  const RecognitionModel& model = listed.record;
+  const SymmetricPoseTuning& tuning = tuning_.symmetric_poses;
+  const auto look = [&](const Similarity& similarity) {
+    return agreement(model, similarity, tuning.overlap, tuning.samples);
+  };
+  const double enough = tuning.enough * look(pose.pose);
+  std::vector<ExaminedPose> tried;
+  for (const Similarity& other :
+       kernels::turned(model.samples, model.diagonal, pose.pose, tree_,
+                       close_overlap(model, pose.pose), tuning_.measurement.model_samples))
+    if (const double agreement = look(other); agreement > enough)
+      tried.push_back(
+          {.listed = pose.listed, .pose = other, .cluster = pose.cluster, .agreement = agreement});
+  keep(tried, tuning.per_pose, 0);
+  for (ExaminedPose& other : tried) {
+    refine_roughly(listed, other);
+    verify(listed, other);
+  }
+  std::erase_if(tried, [&](const ExaminedPose& other) { return other.score <= pose.score; });
+  return tried;
+}
+
+/// Returns the tolerance within which the surfaces match in a pose that is right.
+kernels::OverlapOptions PoseExaminer::close_overlap(const RecognitionModel& model,
+                                                    const Similarity& pose) const {
+  const MeasurementTuning& tuning = tuning_.measurement;
+  kernels::OverlapOptions result;
+  const std::vector<float>& of_scene = scene_.features.level_scale;
+  const std::vector<float>& of_model = model.features.level_scale;
+  if (of_scene.empty() || of_model.empty()) return result;
+  const double edge = std::max<double>(of_scene.front(), of_model.front() * pose.scale);
+  result.match = std::clamp(tuning.match_edges * edge / (model.diagonal * pose.scale), result.match,
+                            tuning.widest_match);
+  return result;
+}
+
+double PoseExaminer::agreement(const RecognitionModel& model, const Similarity& pose,
+                               const kernels::OverlapOptions& options, std::int64_t samples) const {
+  return kernels::overlap(model.samples, model.diagonal, pose, tree_, options, samples).agreement();
+}
+
+void PoseExaminer::refine_roughly(const ListedModel& listed, ExaminedPose& pose) const {
+  const RecognitionModel& model = listed.record;
+  pose.pose =
+      kernels::refined(model.samples, model.diagonal, pose.pose, tree_, tuning_.refinement.rough);
+}
+
+/// Keeps the first of poses that have become one.
+void PoseExaminer::leave_out_repeated(ListedModel& listed) const {
+  const RecognitionModel& model = listed.record;
+  const kernels::PoseTolerance& same = tuning_.refinement.same;
+  const Vector3d centre = model.centre.cast<double>();
+  std::vector<ExaminedPose> different;
+  for (const ExaminedPose& pose : listed.poses)
+    if (std::ranges::none_of(different, [&](const ExaminedPose& d) {
+          return std::abs(std::log(d.pose.scale / pose.pose.scale)) < same.log_scale &&
+                 (d.pose.apply(centre) - pose.pose.apply(centre)).norm() <
+                     same.distance * model.diagonal * pose.pose.scale &&
+                 kernels::rotation_between(d.pose.rotation, pose.pose.rotation) < same.angle;
+        }))
+      different.push_back(pose);
+  listed.poses = std::move(different);
+}
+
+}  // namespace semigeo::jobs

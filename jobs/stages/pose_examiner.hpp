@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "jobs/stages/recognition_tuning.hpp"
+#include "kernels/recognition/overlap.hpp"
+#include "kernels/recognition/pose_clusters.hpp"
+#include "kernels/recognition/recognition_model.hpp"
+#include "kernels/recognition/similarity.hpp"
+
+namespace semigeo::jobs {
+
+/// A pose of a model that is examined more and more closely. It leads from the model's own
+/// coordinates to the scene's; origins are left out.
+struct ExaminedPose {
+  std::size_t listed = 0;  ///< Index of the model in the shortlist.
+  kernels::Similarity pose;
+  double cluster = 0;             ///< Weight of the matches that agree on the pose.
+  double agreement = 0;           ///< Agreement of the surfaces at the last look.
+  double support = 0;             ///< Weight of the matches that agree on the refined pose.
+  kernels::Overlap overlap = {};  ///< How the model lies in the scene.
+  double explained = 0;           ///< Share of the scene's samples that lie on the model.
+  double score = 0;
+};
+
+/// A model that may be in the scene.
+struct ListedModel {
+  std::int64_t model = 0;  ///< Index in HashLibrary::models.
+  kernels::RecognitionModel record;
+  kernels::PoseVotes votes;                 ///< The votes of triplets.
+  std::optional<kernels::SampleTree> tree;  ///< Finds samples of the model, from step 6 on.
+  std::vector<ExaminedPose> poses;
+};
+
+/// Returns the score of a measured pose. The result is 0 if nothing matches.
+double score_of(const ExaminedPose& pose, const ScoreWeights& weights);
+
+/// Examines poses of models in one scene. Different models may be examined at the same time.
+class PoseExaminer {
+ public:
+  /// Keeps references to both, which must neither move nor change.
+  PoseExaminer(const kernels::RecognitionModel& scene, const RecognitionTuning& tuning);
+
+  /// Glances at all poses of a model, and keeps those that are worth a closer look.
+  void glance(ListedModel& listed) const;
+
+  /// Refines poses of a model roughly, and keeps the best different ones.
+  void look_closer(ListedModel& listed, const RefinementEffort& effort) const;
+
+  /// Refines a pose, and measures it in the whole scene. The model must have its tree.
+  void verify(const ListedModel& listed, ExaminedPose& pose) const;
+
+  /// Measures a pose against those samples of the scene that `used` does not mark; it may be
+  /// empty. The model must have its tree.
+  void measure(const ListedModel& listed, ExaminedPose& pose,
+               std::span<const std::uint8_t> used) const;
+
+  /// Returns poses with a better score that a nearly symmetric model may have instead of this one.
+  std::vector<ExaminedPose> better_symmetric_poses(const ListedModel& listed,
+                                                   const ExaminedPose& pose) const;
+
+ private:
+  kernels::OverlapOptions close_overlap(const kernels::RecognitionModel& model,
+                                        const kernels::Similarity& pose) const;
+  double agreement(const kernels::RecognitionModel& model, const kernels::Similarity& pose,
+                   const kernels::OverlapOptions& options, std::int64_t samples) const;
+  void refine_roughly(const ListedModel& listed, ExaminedPose& pose) const;
+  void leave_out_repeated(ListedModel& listed) const;
+
+  const kernels::RecognitionModel& scene_;
+  const RecognitionTuning& tuning_;
+  kernels::SampleTree tree_;
+};
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,156 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "kernels/recognition/overlap.hpp"
+#include "kernels/recognition/pose_clusters.hpp"
+
+namespace semigeo::jobs {
+
+// The numbers with which models are found in a scene, step by step. They were chosen with the
+// experiments of bench/RECOGNITION.md. Each look at a pose costs more than the one before, and
+// fewer poses are looked at.
+
+/// Step 1: triplets of the scene are looked up in the library. A scene with more triangles or
+/// matches than are allowed is represented by an even share of its triangles: an object that is
+/// seen well has hundreds of them.
+struct LookUpTuning {
+  /// A side of a scene's triplet may be longer or shorter than those of models by this factor.
+  double band_slack = 1.075;
+  /// The height of a scene's triplet may be smaller than those of models by this factor.
+  double height_slack = 0.9;
+  std::int64_t most_triangles = 32'000;        ///< Largest number of triangles looked up.
+  std::int64_t most_compared = 3'000'000'000;  ///< Largest number of pairs of triplets compared.
+  std::int64_t most_matches = 8'000'000;       ///< Largest number of matches, as estimated.
+  /// With more pairs of triplets than this, the number of matches is estimated in a few blocks.
+  double many_compared = 2e8;
+  std::size_t probed_blocks = 12;    ///< Number of blocks of the library for the estimate.
+  std::size_t probed_segments = 40;  ///< Number of cells of each block for the estimate.
+};
+
+/// Step 2: models with the best votes are listed.
+struct ShortlistTuning {
+  std::size_t most_models = 400;    ///< Largest number of listed models.
+  std::size_t most_matches = 8000;  ///< Largest number of matches of one model, the weightiest.
+  /// Largest number of matches of all listed models together.
+  std::size_t most_matches_together = 600'000;
+};
+
+/// Pairs of features are matched as well if there are few triplets, as on coarse scans and small
+/// pieces.
+struct PairTuning {
+  std::int64_t few_triplets = 10'000;  ///< Pairs are matched in scenes with fewer triplets.
+  std::size_t most_models = 40;        ///< Number of models, first of the list, that get pairs.
+  int neighbours = 16;                 ///< Number of nearest features that each one is paired with.
+  double vote_weight = 0.5;  ///< Weight of a pair's vote: pairs agree by chance more often.
+};
+
+/// Step 3: matches that agree on a pose form clusters.
+struct ClusterTuning {
+  std::size_t few_models = 40;  ///< Longer lists of models get the two limits that follow.
+  int most_of_many = 24;        ///< Largest number of clusters of a model on a long list.
+  int seeds_of_many = 96;       ///< Largest number of poses tried as centres on a long list.
+  /// A vote supports a pose from which it differs by less than this.
+  kernels::PoseTolerance support = {.log_scale = 0.15, .distance = 0.06, .angle = 0.25};
+};
+
+/// Step 4: the pose of each cluster is compared with the scene at a glance.
+struct GlanceTuning {
+  std::int64_t samples = 40;           ///< Number of samples of the model that are compared.
+  std::size_t poses_by_overlap = 40;   ///< Number of poses of a model that go on by agreement.
+  std::size_t poses_by_weight = 3;     ///< Number of poses that go on by the weight of clusters.
+  std::size_t models_by_overlap = 40;  ///< Number of models that go on by agreement.
+  std::size_t models_by_weight = 30;   ///< Number of models that go on by the weight of clusters.
+};
+
+/// The number of poses that are refined.
+struct RefinementEffort {
+  std::size_t coarse;    ///< Number of poses of one model that are refined roughly.
+  std::size_t refined;   ///< Number of poses of one model that are refined.
+  std::size_t together;  ///< Number of poses of all models that are refined.
+};
+
+/// Step 5: poses are refined until the model lies on the scene's surface.
+struct RefinementTuning {
+  /// The effort if triplets alone were matched.
+  RefinementEffort usual = {.coarse = 5, .refined = 4, .together = 60};
+  /// The effort if pairs were matched, which say little by themselves.
+  RefinementEffort of_pairs = {.coarse = 8, .refined = 6, .together = 120};
+  std::int64_t coarse_samples = 200;  ///< Number of samples compared before rough refinement.
+  std::int64_t middle_samples = 400;  ///< Number of samples compared after rough refinement.
+  std::size_t poses_by_weight = 3;    ///< Number of poses added by the weight of clusters.
+  /// The tolerance before the rough refinement.
+  kernels::OverlapOptions coarse_overlap = {.match = 0.02, .conflict = 0.06, .min_cosine = 0.6};
+  /// The rough refinement reaches as far as clusters of votes may lie from the surface.
+  kernels::RefineOptions rough = {.reach = {0.08, 0.05}, .iterations = 3, .count = 200};
+  /// The fine refinement ends within the tolerance of a match.
+  kernels::RefineOptions fine = {.reach = {0.03, 0.015, 0.01, 0.008}};
+  /// Poses that differ by less than this after the rough refinement are one.
+  kernels::PoseTolerance same = {.log_scale = 0.03, .distance = 0.02, .angle = 0.06};
+};
+
+/// Step 6: refined poses are measured, and get their score. Noise and triangulation grow with the
+/// edges: matching surfaces of coarse scans lie farther apart.
+struct MeasurementTuning {
+  std::int64_t model_samples = 2000;  ///< Number of samples of the model that are compared.
+  std::int64_t scene_samples = 4000;  ///< Number of samples of the scene that are compared.
+  double match_edges = 0.5;           ///< Tolerance in mean edge lengths of the coarser surface.
+  double widest_match = 0.03;         ///< Largest tolerance, in diagonals of the model.
+};
+
+/// Step 7: symmetric poses of the best poses are tried. A cup may have been found with its handle
+/// anywhere.
+struct SymmetricPoseTuning {
+  std::size_t tried = 6;       ///< Number of best poses whose symmetric poses are tried.
+  std::size_t per_pose = 3;    ///< Number of symmetric poses of one pose that are refined.
+  std::int64_t samples = 200;  ///< Number of samples of the model that are compared.
+  /// The tolerance is loose, as turns are tried in steps.
+  kernels::OverlapOptions overlap = {.match = 0.03, .conflict = 0.06, .min_cosine = 0.6};
+  double enough = 0.7;  ///< Least share of the agreement of the first pose, to go on.
+};
+
+/// Step 8: the best pose is an object; the others are measured against the rest of the scene.
+struct ObjectTuning {
+  /// Samples of the scene that lie on an object by this tolerance belong to no other. It is wider
+  /// than that of a match, so that rims of an object support no other one.
+  kernels::OverlapOptions used = {.match = 0.02, .min_cosine = 0.3};
+};
+
+/// The weights of the score, measured on thousands of right and wrong poses. The score is
+///   sqrt(match either) held^h unopposed^u closeness^c (explained wanted)^e
+/// where either = 1 - (1 - match) (1 - explained), held = stability / (stability + half),
+/// unopposed = match / (match + conflict), and wanted = (prior + support) / (2 prior + support).
+struct ScoreWeights {
+  /// The exponent of closeness. A right pose most of all lies close to the surface.
+  double closeness = 8;
+  /// The exponent of `unopposed`. A right pose is not contradicted.
+  double unopposed = 1.5;
+  /// The exponent of `held`. A right pose is held fast by what matches.
+  double held = 0.75;
+  /// The stability of which `held` is one half.
+  double half_held = 0.03;
+  /// The exponent of `explained` and `wanted`. The share of the scene that is explained says less,
+  /// as a model may be a small part of the scene, or the scene a small part of the model.
+  double explained = 0.25;
+  /// The support with which a pose counts before any triplet wants it. A pose that surfaces alone
+  /// speak for is worth a little less than one that triplets want as well.
+  double prior_support = 10;
+};
+
+/// All numbers of recognition. The defaults are what `semigeo recognise` uses.
+struct RecognitionTuning {
+  LookUpTuning look_up = {};
+  ShortlistTuning shortlist = {};
+  PairTuning pairs = {};
+  ClusterTuning clusters = {};
+  GlanceTuning glances = {};
+  RefinementTuning refinement = {};
+  MeasurementTuning measurement = {};
+  SymmetricPoseTuning symmetric_poses = {};
+  ObjectTuning objects = {};
+  ScoreWeights score = {};
+};
+
+}  // namespace semigeo::jobs
