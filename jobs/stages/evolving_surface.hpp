@@ -15,14 +15,14 @@
 
 namespace semigeo::jobs {
 
-/// Connectivity and lineage of a level, in the order of its rows: descendants of level 0 as there,
-/// then what was inserted.
+/// Connectivity and lineage of a level, in the order of its rows. Descendants of vertices of level
+/// 0 come first, in the order of level 0, then inserted vertices.
 struct LevelConnectivity {
   std::vector<std::array<std::int32_t, 3>> triangles;
-  std::vector<std::int32_t> source_vertex;  ///< (N) vertex of level 0, -1 = inserted
-  std::vector<std::int32_t> part;           ///< (N) numbered by first vertex
-  std::vector<std::uint8_t> vertex_filled;  ///< (N) if level 0 has such marks
-  std::vector<std::uint8_t> face_filled;    ///< (F)
+  std::vector<std::int32_t> source_vertex;  ///< (N) Vertex of level 0, or -1 if it was inserted.
+  std::vector<std::int32_t> part;           ///< (N) Part, numbered by its first vertex.
+  std::vector<std::uint8_t> vertex_filled;  ///< (N) 1 = made by filling; empty without marks.
+  std::vector<std::uint8_t> face_filled;    ///< (F) 1 = made by filling; empty without marks.
 };
 
 /// The fields of one scale level, in the scan's length unit and in the surface's vertex order.
@@ -32,21 +32,21 @@ struct LevelFields {
   std::vector<float> gaussian_curvature;
   std::vector<float> mean_curvature;
   std::vector<float> patch_completeness;
-  /// If asked for: k1 >= k2, and their directions, unit or zero.
+  // Only if `EvolutionOptions::principal` is set: k1 >= k2. Directions are unit vectors or zero.
   std::vector<float> principal_curvature_1;
   std::vector<float> principal_curvature_2;
   std::vector<Eigen::Vector3f> principal_direction_1;
   std::vector<Eigen::Vector3f> principal_direction_2;
-  double step = 0;   ///< sample distance of the patches
-  double scale = 0;  ///< sigma of the fields: sqrt(variance of the smoothing so far + step^2)
+  double step = 0;   ///< Sample distance of the patches.
+  double scale = 0;  ///< Sigma of the fields: sqrt(variance of the smoothing so far + step^2).
   double mean_edge_length = 0;
 
   std::int64_t parts = 0;
-  kernels::RemeshCounts remeshed;  ///< what was done to the mesh of the level before
-  double shortest_side = 0;        ///< no side and no height is shorter; 0: not seen to
+  kernels::RemeshCounts remeshed;  ///< What was done to the mesh of the level before.
+  double shortest_side = 0;        ///< No side and no height is shorter; 0: not remeshed.
   /// Row i of the level is vertex (*stored_order)[i].
   std::shared_ptr<const std::vector<std::int32_t>> stored_order;
-  std::optional<LevelConnectivity> connectivity;  ///< if it is not that of the level before
+  std::optional<LevelConnectivity> connectivity;  ///< Empty if it is that of the level before.
 };
 
 /// How the sampling step grows from level to level.
@@ -62,20 +62,21 @@ enum class Rescale {
   kNone    ///< Nothing.
 };
 
+/// How a surface is evolved.
 struct EvolutionOptions {
   bool curved = true;  ///< sample quadratic faces; else flat ones, as the thesis does
   kernels::Coordinates coordinates = kernels::Coordinates::semigeodesic;
   Schedule schedule = Schedule::kUniform;
   Rescale rescale = Rescale::kSize;  ///< Used under `kUniform` only.
-  bool remesh = true;      ///< rid every level after 0 of odd triangles and lost parts (5.5)
-  bool principal = false;  ///< principal curvatures as well
-  double step_factor = 1;  ///< sample distance of level 0 in its mean edge lengths
+  bool remesh = true;      ///< Odd triangles and lost parts are removed after level 0 (5.5).
+  bool principal = false;  ///< Principal curvatures are computed as well.
+  double step_factor = 1;  ///< Sample distance of level 0, in its mean edge lengths.
 };
 
-/// What vertices and faces bring along from before level 0.
+/// Where vertices and faces of level 0 come from.
 struct Origins {
-  std::vector<std::int32_t> vertex;         ///< (N) row of level 0, a permutation; empty: its own
-  std::vector<std::uint8_t> vertex_filled;  ///< (N) 1 = made by filling a hole; empty: no marks
+  std::vector<std::int32_t> vertex;  ///< (N) Row of level 0, a permutation; empty if it is i.
+  std::vector<std::uint8_t> vertex_filled;  ///< (N) 1 = made by filling; empty without marks.
   std::vector<std::uint8_t> face_filled;    ///< (F)
 };
 
@@ -89,27 +90,30 @@ class EvolvingSurface {
   EvolvingSurface(kernels::Surface surface, const EvolutionOptions& options,
                   const engine::RunContext& context, Origins origins = {});
 
-  /// Curvature of the current level. Results do not depend on the number of threads.
+  /// Computes the fields of the current level. Results do not depend on the number of threads.
   /// Source: thesis 5.3, 5.4, 5.6.
   LevelFields evaluate();
 
-  /// After `evaluate`: the surface, smoothed by the same patches, becomes the next level. If so
-  /// wanted each part is rescaled about its centroid and the mesh rid of odd triangles and of parts
-  /// on which no patch was valid, but for the largest part. A surface that collapses altogether
-  /// leaves a triangle or a tetrahedron in its place. Source: thesis 5.1, 5.4, 5.5.
+  /// Makes the surface, smoothed by the patches of `evaluate`, the next level. Call it after
+  /// `evaluate`. If the options say so, each part is rescaled about its centroid, and odd triangles
+  /// and parts on which no patch was valid are removed, but not the largest part. A surface that
+  /// collapses altogether leaves a triangle or a tetrahedron in its place. Source:
+  /// thesis 5.1, 5.4, 5.5.
   void move();
 
-  /// Both, or the first only.
+  /// Calls `evaluate`, then `move` if `move` is set, and returns the fields.
   LevelFields advance(bool move);
 
   std::int64_t vertex_count() const { return mesh_.vertex_count(); }
-  /// The current level: points in internal units, of which one is `unit` scan units.
+  /// Returns the mesh of the current level. Its points are in internal units.
   const kernels::LevelMesh& mesh() const { return mesh_; }
+  /// Returns the number of scan units in one internal unit.
   double unit() const { return unit_; }
   const EvolutionOptions& options() const { return options_; }
-  /// Between `evaluate` and `move`: (N) normals of the smoothed surface, unit or zero.
+  /// Returns the (N) normals of the smoothed surface, unit or zero. Call it between `evaluate` and
+  /// `move`.
   const std::vector<Eigen::Vector3f>& smoothed_normals() const { return next_normals_; }
-  /// It has collapsed; what is left only marks the place.
+  /// Returns whether the surface has collapsed. What is left then only marks its place.
   bool vanished() const { return vanished_; }
 
  private:

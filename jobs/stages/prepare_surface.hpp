@@ -11,26 +11,26 @@
 
 namespace semigeo::jobs {
 
-/// What is to be done to a repaired scan before it is smoothed; nothing by default.
+/// What is done to a repaired scan before it is smoothed. By default nothing is done.
 struct PreparationOptions {
-  std::int64_t fill_holes = 0;            ///< fill holes of at most so many edges; 0: none
-  double decimate = 0;                    ///< tolerance; 0: none
-  bool decimate_in_length_units = false;  ///< else in mean edge lengths
-  std::int64_t target_vertices = 0;       ///< decimate to so many; 0: no limit
+  std::int64_t fill_holes = 0;            ///< Holes of at most so many edges are filled; 0: none.
+  double decimate = 0;                    ///< Tolerance of the decimation; 0: none.
+  bool decimate_in_length_units = false;  ///< The unit of `decimate`; otherwise mean edge lengths.
+  std::int64_t target_vertices = 0;       ///< Vertices are removed down to so many; 0: no limit.
 
   bool decimates() const { return decimate > 0 || target_vertices > 0; }
   bool any() const { return fill_holes > 0 || decimates(); }
 };
 
-/// What was done.
+/// What was done to a scan.
 struct PreparationResult {
   kernels::HoleCounts holes;
-  std::int64_t filled_vertices = 0;  ///< that filling made and decimation left
+  std::int64_t filled_vertices = 0;  ///< Vertices that filling made and decimation left.
   std::int64_t filled_faces = 0;
   std::int64_t removed_vertices = 0;
   std::int64_t removed_faces = 0;
-  double tolerance = 0;               ///< of the decimation, length units; 0: only a target
-  kernels::DistanceSummary distance;  ///< of the vertices before decimation from what is left
+  double tolerance = 0;               ///< Tolerance in length units; 0: only a target.
+  kernels::DistanceSummary distance;  ///< From vertices before the decimation to what is left.
 
   bool operator==(const PreparationResult&) const = default;
 };
@@ -41,15 +41,17 @@ nlohmann::json json_of(const PreparationResult& result, const PreparationOptions
 /// Returns that JSON as text.
 std::string to_json(const PreparationResult& result, const PreparationOptions& options);
 
+/// A prepared surface and what was done to it.
 struct PreparedSurface {
   kernels::Surface surface;
-  std::vector<std::uint8_t> vertex_filled;  ///< (N) 1 = made by filling; empty if not asked for
+  std::vector<std::uint8_t> vertex_filled;  ///< (N) 1 = made by filling; empty without filling.
   std::vector<std::uint8_t> face_filled;    ///< (F)
   PreparationResult result;
 };
 
-/// Fills holes, then decimates. A decimated face counts as filled if its centroid lies nearest to
-/// one that was. The result does not depend on the number of threads. Source: thesis 5.1.
+/// Fills holes, then decimates, and returns the result. A decimated face counts as filled if its
+/// centroid lies nearest to one that was. The result does not depend on the number of threads.
+/// Source: thesis 5.1.
 PreparedSurface prepare_surface(kernels::Surface surface, const PreparationOptions& options,
                                 const engine::RunContext& context);
 

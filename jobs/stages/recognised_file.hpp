@@ -16,12 +16,12 @@ namespace semigeo::jobs {
 // What was recognised in a scene, as a JSON file that carries its key and a digest of itself. It
 // holds no time, place or host: the same scene and library give the same bytes.
 
-/// What the file says of the scene.
+/// What the file says about the scene.
 struct RecognisedScene {
   std::string name = {};
   std::string input_name = {};  ///< UTF-8
   std::string xxh3 = {};
-  std::string format = {};                  ///< of the file
+  std::string format = {};                  ///< File format of the scene.
   std::optional<ScanRepairs> repairs = {};  ///< only of a scan
   std::int64_t vertices = 0;
   std::int64_t triangles = 0;
@@ -29,18 +29,19 @@ struct RecognisedScene {
   std::int64_t samples = 0;
 };
 
-/// Models of the ranking that the file has, at most.
+/// The largest number of models in the ranking of the file.
 inline constexpr std::size_t kMostRanked = 20;
 
-/// Writes the file, whole or not at all. io::Error if that cannot be done.
+/// Writes the file, whole or not at all. Throws io::Error if it cannot be written.
 void write_recognised(const std::filesystem::path& path, const std::string& key,
                       const RecognisedScene& scene, const io::HashLibrary& library,
                       const SearchParameters& parameters, const Recognition& recognition);
 
-/// The file's content. io::Error if it is absent, damaged, or of another format or version.
+/// Returns the content of the file. Throws io::Error if the file is absent, damaged, or of another
+/// format or version.
 nlohmann::json read_recognised(const std::filesystem::path& path);
 
-/// The key of the job that made it; errors likewise.
+/// Returns the key of the job that made the file. Throws io::Error as `read_recognised` does.
 std::string recognised_key(const std::filesystem::path& path);
 
 }  // namespace semigeo::jobs

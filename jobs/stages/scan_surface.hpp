@@ -17,7 +17,7 @@ struct ScanRepairs {
   std::int64_t bytes_after_end = 0;        ///< Bytes behind all that the scan's header promises.
 };
 
-/// What a scan file holds, repaired.
+/// The repaired surface of a scan file.
 struct ScanSurface {
   kernels::BuiltSurface built;
   std::string format;  ///< Format of the scan: "PLY binary little endian", ...

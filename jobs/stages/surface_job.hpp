@@ -14,27 +14,27 @@
 
 namespace semigeo::jobs {
 
-/// Scan in, dataset out.
+/// A job that reads a scan and writes its dataset.
 struct SurfaceJob {
   std::filesystem::path input;
-  std::string input_name;  ///< what the dataset says of it, as UTF-8
-  std::string name;        ///< of the dataset
+  std::string input_name;  ///< Name of the scan in the dataset, as UTF-8.
+  std::string name;        ///< Name of the dataset.
   std::filesystem::path output;
-  std::string input_xxh3;  ///< of the scan's bytes
-  std::string key;         ///< hash of everything the dataset depends on
+  std::string input_xxh3;  ///< Digest of the scan's bytes.
+  std::string key;         ///< Hash of everything the dataset depends on.
 };
 
 /// What a surface job made.
 struct SurfaceJobResult {
-  std::string format;  ///< of the scan
+  std::string format;  ///< File format of the scan.
   std::int64_t vertices = 0;
   std::int64_t triangles = 0;
   std::int32_t parts = 0;
   std::int64_t levels = 0;
   kernels::SurfaceRepairs repairs;
   PreparationResult preparation;
-  kernels::RemeshCounts remeshed;  ///< of all levels together
-  bool vanished = false;           ///< the last level is but a triangle or a tetrahedron
+  kernels::RemeshCounts remeshed;  ///< Sum over all levels.
+  bool vanished = false;           ///< The last level is only a triangle or a tetrahedron.
 };
 
 /// Returns the counts that datasets have as JSON with sorted keys.
