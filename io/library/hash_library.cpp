@@ -64,6 +64,14 @@ Hdf5File::Array open_rows(const Hdf5File& file, const std::string& path, Element
   return array;
 }
 
+/// Returns the parameters. A text that is not JSON becomes a string, which no program knows as
+/// parameters.
+nlohmann::json parameters_in(const Hdf5File& file) {
+  auto text = file.read_attribute_as<std::string>("/", "parameters");
+  auto parameters = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+  return parameters.is_discarded() ? nlohmann::json(std::move(text)) : parameters;
+}
+
 }  // namespace
 
 struct HashLibrary::State {
@@ -107,7 +115,7 @@ struct HashLibrary::State {
 
 HashLibrary::State::State(const std::filesystem::path& path)
     : file(open_complete(path, kLibraryFormat)),
-      parameters(read_json_attribute(file, "parameters")),
+      parameters(parameters_in(file)),
       digest(file.read_attribute_as<std::string>("/", "digest")),
       postings(open_rows(file, kPostings, ElementType::kPosting, 1)),
       features(open(kFeatureArray)),

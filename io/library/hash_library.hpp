@@ -36,8 +36,10 @@ class HashLibrary {
   HashLibrary& operator=(HashLibrary&&) noexcept;
 
   const std::filesystem::path& path() const;
-  const nlohmann::json& parameters() const;  ///< Parameters with which triplets were made.
-  const std::string& digest() const;         ///< Content digest, 32 hexadecimal digits.
+  /// Returns the parameters with which triplets were made. A text of the file that is not JSON
+  /// is a string here.
+  const nlohmann::json& parameters() const;
+  const std::string& digest() const;  ///< Content digest, 32 hexadecimal digits.
   const std::vector<ModelInfo>& models() const;
 
   /// Returns (kTripletCells + 1) numbers: postings of cell c are those from cells[c] to cells[c +

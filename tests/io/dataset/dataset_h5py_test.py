@@ -176,8 +176,9 @@ def check_header(file, digest):
     assert text["digest"] == digest and len(digest) == 32
     assert text["input_name"] == "vases/Krug Nº 7.ply"
     assert text["job_key"] == "key-of-the-job" and text["length_unit"] == "mm"
-    assert text["parameters"] == '{"levels": 3}'
-    assert text["repairs"] == '{"duplicate_faces": 2}'
+    assert text["parameters"] == '{"levels":3}'
+    assert text["repairs"] == '{"duplicate_faces":2}'
+    assert text["preparation"] == '{"holes":1}'
     assert file.attrs["complete"] == 1 and file.attrs["format_version"] == 4
     assert list(file.attrs["origin"]) == [1000.5, -2, 3]
 
