@@ -18,7 +18,7 @@ void add_directions(CLI::App& app, int& exit_code);
 void add_analytic(CLI::App& app, int& exit_code);
 
 inline kernels::Coordinates coordinates_of(const std::string& name) {
-  return name == "polar" ? kernels::Coordinates::polar : kernels::Coordinates::semigeodesic;
+  return name == "polar" ? kernels::Coordinates::kPolar : kernels::Coordinates::kSemigeodesic;
 }
 
 }  // namespace semigeo::accuracy

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bench/support/quantile.hpp"
+#include "kernels/surface/circulators.hpp"
 
 namespace semigeo::accuracy {
 namespace {
@@ -52,17 +53,15 @@ std::vector<VertexSpread> direction_spreads(const kernels::PreparedSurface& surf
       gaussian.clear();
       mean.clear();
       bool whole = true;
-      const std::int32_t start = s.outgoing[v];
-      std::int32_t h = start;
-      do {
+      for (const std::int32_t h : kernels::outgoing(s, static_cast<std::int32_t>(v))) {
         const kernels::EvolvedVertex e =
             kernels::evolve_vertex(sampled, static_cast<std::int32_t>(v),
                                    {.step = step, .coordinates = coordinates, .first = h});
         whole = whole && e.patch_completeness == 1;
         gaussian.push_back(e.gaussian_curvature);
         mean.push_back(e.mean_curvature);
-        h = s.ccw(h);
-      } while (whole && h != kernels::kNone && h != start);
+        if (!whole) break;
+      }
       result[v] = {{spread(gaussian), spread(mean)}, whole};
     }
   });

@@ -70,8 +70,8 @@ class Clock : public engine::Observer {
 
 jobs::EvolutionOptions evolution_options(const Options& options) {
   return {.curved = options.surface == "curved",
-          .coordinates = options.coordinates == "polar" ? kernels::Coordinates::polar
-                                                        : kernels::Coordinates::semigeodesic,
+          .coordinates = options.coordinates == "polar" ? kernels::Coordinates::kPolar
+                                                        : kernels::Coordinates::kSemigeodesic,
           .schedule =
               options.schedule == "octaves" ? jobs::Schedule::kOctaves : jobs::Schedule::kUniform,
           .rescale = options.rescale == "size"    ? jobs::Rescale::kSize

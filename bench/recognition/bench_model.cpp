@@ -9,6 +9,7 @@
 #include "bench/support/quadric_decimation.hpp"
 #include "io/files/error.hpp"
 #include "io/scans/scan_reader.hpp"
+#include "kernels/surface/bounding_box.hpp"
 
 namespace semigeo::recognition {
 namespace {
@@ -65,7 +66,7 @@ std::unique_ptr<BenchModel> make_model(std::string name, kernels::TriangleMesh m
   model->built = kernels::build_surface(repaired(std::move(mesh), most_vertices));
   if (model->built.surface.face_count() == 0) return nullptr;
   model->mesh = file_mesh(model->built);
-  const Eigen::AlignedBox3d box = bench::bounding_box(model->mesh);
+  const Eigen::AlignedBox3d box = kernels::bounding_box(model->mesh.points);
   model->centre = box.center();
   model->diagonal = box.diagonal().norm();
   model->nearest = std::make_unique<kernels::NearestSurface>(model->built.surface);

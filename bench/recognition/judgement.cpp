@@ -8,6 +8,7 @@
 
 #include "bench/support/chance.hpp"
 #include "bench/support/mesh_changes.hpp"
+#include "kernels/surface/bounding_box.hpp"
 
 namespace semigeo::recognition {
 namespace {
@@ -28,7 +29,7 @@ PoseError pose_error(const BenchModel& model, const kernels::Similarity& found,
                   std::numbers::pi;
   error.scale = std::abs(found.scale / truth.scale - 1);
   error.centre = away(model.centre);
-  const Eigen::AlignedBox3d box = bench::bounding_box(model.mesh);
+  const Eigen::AlignedBox3d box = kernels::bounding_box(model.mesh.points);
   error.box = 0;
   for (int corner = 0; corner < 8; ++corner)
     error.box =

@@ -13,6 +13,7 @@
 #include "bench/support/chance.hpp"
 #include "bench/support/mesh_changes.hpp"
 #include "bench/support/quadric_decimation.hpp"
+#include "kernels/surface/bounding_box.hpp"
 
 namespace semigeo::recognition {
 namespace {
@@ -152,8 +153,8 @@ Scene make_scene(const SceneKind& kind, ModelSpan models, std::size_t first, std
     scene.objects.push_back(object);
   }
   bench::Random similarity = numbers(Chance::similarity);
-  const Similarity whole =
-      bench::random_similarity(bench::bounding_box(scene.mesh).diagonal().norm(), similarity);
+  const Similarity whole = bench::random_similarity(
+      kernels::bounding_box(scene.mesh.points).diagonal().norm(), similarity);
   bench::move(scene.mesh, whole);
   for (PlacedObject& object : scene.objects) object.pose = after(whole, object.pose);
   return scene;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bench/support/mesh_changes.hpp"
+#include "kernels/surface/bounding_box.hpp"
 
 namespace semigeo::recognition {
 namespace {
@@ -31,7 +32,7 @@ TriangleMesh seen_along(const TriangleMesh& mesh, const Eigen::Matrix3d& frame) 
 /// Triangles by where they lie across the direction.
 class Grid {
  public:
-  explicit Grid(const TriangleMesh& mesh) : mesh_(mesh), box_(bench::bounding_box(mesh)) {
+  explicit Grid(const TriangleMesh& mesh) : mesh_(mesh), box_(kernels::bounding_box(mesh.points)) {
     side_ = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(mesh.triangles.size()))));
     cells_.resize(static_cast<std::size_t>(side_) * side_);
     for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
@@ -101,8 +102,8 @@ double way_to_contact(const TriangleMesh& moving, const TriangleMesh& still,
 
 Eigen::Vector3d touching_shift(const TriangleMesh& moving, const TriangleMesh& still,
                                bench::Random& random) {
-  const Eigen::AlignedBox3d moving_box = bench::bounding_box(moving);
-  const Eigen::AlignedBox3d still_box = bench::bounding_box(still);
+  const Eigen::AlignedBox3d moving_box = kernels::bounding_box(moving.points);
+  const Eigen::AlignedBox3d still_box = kernels::bounding_box(still.points);
   const double smaller = std::min(moving_box.diagonal().norm(), still_box.diagonal().norm());
   const double larger = std::max(moving_box.diagonal().norm(), still_box.diagonal().norm());
   std::uniform_real_distribution<double> off(0.0, 0.25);

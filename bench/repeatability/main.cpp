@@ -125,8 +125,8 @@ int run(Options options) {
   options.search.evolution.schedule =
       options.schedule == "octaves" ? jobs::Schedule::kOctaves : jobs::Schedule::kUniform;
   options.search.evolution.coordinates = options.coordinates == "polar"
-                                             ? kernels::Coordinates::polar
-                                             : kernels::Coordinates::semigeodesic;
+                                             ? kernels::Coordinates::kPolar
+                                             : kernels::Coordinates::kSemigeodesic;
   engine::Workers workers(options.threads);
   engine::Observer observer;
   const engine::RunContext context{workers, observer, {}};

@@ -11,6 +11,7 @@
 #include "bench/support/mesh_changes.hpp"
 #include "bench/support/quadric_decimation.hpp"
 #include "bench/support/quantile.hpp"
+#include "kernels/surface/bounding_box.hpp"
 
 namespace semigeo::repeatability {
 namespace {
@@ -95,7 +96,7 @@ ChangedMesh MeshChanger::changed(const Case& change) {
   if (change.moved) {
     bench::Random numbers = random(options_.seed, Chance::similarity, change.name);
     result.similarity =
-        bench::random_similarity(bench::bounding_box(as_is_).diagonal().norm(), numbers);
+        bench::random_similarity(kernels::bounding_box(as_is_.points).diagonal().norm(), numbers);
     bench::move(result.mesh, result.similarity);
   }
   return result;

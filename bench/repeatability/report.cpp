@@ -38,7 +38,7 @@ std::vector<Value> distinct(std::span<const Row> rows, const Get& get) {
 
 /// What identifies rows of different meshes as alike.
 struct Key {
-  FeatureKind kind = FeatureKind::gaussian;
+  FeatureKind kind = FeatureKind::kGaussian;
   int level = 0;
   double radius = 0;
   bool operator==(const Key&) const = default;

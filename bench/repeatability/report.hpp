@@ -13,7 +13,7 @@ namespace semigeo::repeatability {
 struct Row {
   std::string mesh;
   std::string change;  ///< name of the case
-  kernels::FeatureKind kind = kernels::FeatureKind::gaussian;
+  kernels::FeatureKind kind = kernels::FeatureKind::kGaussian;
   int level = 0;                ///< of the original
   double radius = 0;            ///< in scales; 0 for torsion, which has none
   double mean_edge_length = 0;  ///< of the original
@@ -25,7 +25,7 @@ struct Row {
 
 /// Whether maxima of this kind are compared within a radius.
 constexpr bool has_radius(kernels::FeatureKind kind) {
-  return kind == kernels::FeatureKind::gaussian || kind == kernels::FeatureKind::mean;
+  return kind == kernels::FeatureKind::kGaussian || kind == kernels::FeatureKind::kMean;
 }
 
 /// With a line of headings; quantities in the order of the members.

@@ -20,12 +20,12 @@ constexpr float kMinScaleFreeMean = 0.1f;
 
 bool strong(FeatureKind kind, const Feature& feature) {
   switch (kind) {
-    case FeatureKind::gaussian:
+    case FeatureKind::kGaussian:
       return std::abs(feature.scale_free_gaussian) >= kMinScaleFreeGaussian;
-    case FeatureKind::mean:
+    case FeatureKind::kMean:
       return std::abs(feature.scale_free_mean) >= kMinScaleFreeMean;
-    case FeatureKind::gaussian_torsion:
-    case FeatureKind::mean_torsion:
+    case FeatureKind::kGaussianTorsion:
+    case FeatureKind::kMeanTorsion:
       break;
   }
   return true;

@@ -21,12 +21,6 @@ TriangleMesh triangle_mesh(const kernels::Surface& surface) {
   return mesh;
 }
 
-Eigen::AlignedBox3d bounding_box(const TriangleMesh& mesh) {
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& p : mesh.points) box.extend(p);
-  return box;
-}
-
 double area(const TriangleMesh& mesh) {
   double sum = 0;
   for (const auto& t : mesh.triangles)

@@ -12,7 +12,6 @@ namespace semigeo::bench {
 /// The triangles of a surface, in its own coordinates.
 kernels::TriangleMesh triangle_mesh(const kernels::Surface& surface);
 
-Eigen::AlignedBox3d bounding_box(const kernels::TriangleMesh& mesh);
 double area(const kernels::TriangleMesh& mesh);
 /// Over the corners of all faces: edges inside count twice, those of a rim once.
 double mean_edge_length(const kernels::TriangleMesh& mesh);

@@ -10,7 +10,7 @@ namespace semigeo::io {
 
 /// A view of features of one kind in somebody else's memory.
 struct FeaturesView {
-  kernels::FeatureKind kind = kernels::FeatureKind::gaussian;
+  kernels::FeatureKind kind = kernels::FeatureKind::kGaussian;
   std::span<const kernels::Feature> features;
 };
 

@@ -71,7 +71,7 @@ void export_contours(const io::Dataset& dataset, const ExportOptions& options,
                      OutputFormat format) {
   const bool gaussian = options.contours == kFeatureKindNames[0];
   const kernels::SampledContours contours =
-      dataset.read_contours(options.level, gaussian ? FeatureKind::gaussian : FeatureKind::mean);
+      dataset.read_contours(options.level, gaussian ? FeatureKind::kGaussian : FeatureKind::kMean);
   const auto write = format == OutputFormat::ply ? io::write_contours_ply : io::write_contours_csv;
   write(options.output, contours, dataset.header().origin);
   std::printf("%s: %zu contours %s = 0, %zu points\n", options.output.c_str(),

@@ -10,6 +10,7 @@
 #include "engine/stopwatch.hpp"
 #include "jobs/stages/remesh_surface.hpp"
 #include "kernels/evolution/evolution.hpp"
+#include "kernels/surface/vertex_rows.hpp"
 
 namespace semigeo::jobs {
 namespace {
@@ -320,9 +321,9 @@ LevelConnectivity EvolvingSurface::connectivity() const {
   const std::vector<std::int32_t>& order = *stored_order_;
   const std::size_t n = order.size();
   LevelConnectivity result;
-  result.source_vertex.resize(n);
+  result.source_vertex = kernels::gathered(mesh_.source, order);
+  result.vertex_filled = kernels::gathered(mesh_.vertex_filled, order);
   result.part.resize(n);
-  if (!mesh_.vertex_filled.empty()) result.vertex_filled.resize(n);
   result.face_filled = mesh_.face_filled;
   std::vector<std::int32_t> row(n);
   std::vector<std::int32_t> part_number(mesh_.part_count, kernels::kNone);
@@ -333,8 +334,6 @@ LevelConnectivity EvolvingSurface::connectivity() const {
     std::int32_t& part = part_number[mesh_.part[v]];
     if (part == kernels::kNone) part = parts++;
     result.part[i] = part;
-    result.source_vertex[i] = mesh_.source[v];
-    if (!mesh_.vertex_filled.empty()) result.vertex_filled[i] = mesh_.vertex_filled[v];
   }
   result.triangles.resize(mesh_.connectivity.triangles.size());
   context_.workers.for_blocks(mesh_.connectivity.face_count(), kFaceBlock, [&](IndexRange range) {

@@ -65,7 +65,7 @@ enum class Rescale {
 /// How a surface is evolved.
 struct EvolutionOptions {
   bool curved = true;  ///< sample quadratic faces; else flat ones, as the thesis does
-  kernels::Coordinates coordinates = kernels::Coordinates::semigeodesic;
+  kernels::Coordinates coordinates = kernels::Coordinates::kSemigeodesic;
   Schedule schedule = Schedule::kUniform;
   Rescale rescale = Rescale::kSize;  ///< Used under `kUniform` only.
   bool remesh = true;      ///< Odd triangles and lost parts are removed after level 0 (5.5).

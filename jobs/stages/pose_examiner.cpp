@@ -63,8 +63,8 @@ void PoseExaminer::look_closer(ListedModel& listed, const RefinementEffort& effo
 
 void PoseExaminer::verify(const ListedModel& listed, ExaminedPose& pose) const {
   const RecognitionModel& model = listed.record;
-  pose.pose =
-      kernels::refined(model.samples, model.diagonal, pose.pose, tree_, tuning_.refinement.fine);
+  pose.pose = kernels::refine_pose(model.samples, model.diagonal, pose.pose, tree_,
+                                   tuning_.refinement.fine);
   pose.support = listed.votes.support(pose.pose, tuning_.clusters.support);
   measure(listed, pose, {});
 }
@@ -77,8 +77,8 @@ void PoseExaminer::measure(const ListedModel& listed, ExaminedPose& pose,
   options.stability = true;
   pose.overlap = kernels::overlap(model.samples, model.diagonal, pose.pose, tree_, options,
                                   tuning.model_samples, used);
-  const auto marks = kernels::explained(*listed.tree, model.diagonal, pose.pose, scene_.samples,
-                                        options, tuning.scene_samples, used);
+  const auto marks = kernels::samples_on_model(*listed.tree, model.diagonal, pose.pose,
+                                               scene_.samples, options, tuning.scene_samples, used);
   pose.explained = static_cast<double>(std::ranges::count(marks, 1)) /
                    static_cast<double>(std::max<std::size_t>(marks.size(), 1));
   pose.score = score_of(pose, tuning_.score);
@@ -94,8 +94,8 @@ std::vector<ExaminedPose> PoseExaminer::better_symmetric_poses(const ListedModel
   const double enough = tuning.enough * look(pose.pose);
   std::vector<ExaminedPose> tried;
   for (const Similarity& other :
-       kernels::turned(model.samples, model.diagonal, pose.pose, tree_,
-                       close_overlap(model, pose.pose), tuning_.measurement.model_samples))
+       kernels::symmetric_poses(model.samples, model.diagonal, pose.pose, tree_,
+                                close_overlap(model, pose.pose), tuning_.measurement.model_samples))
     if (const double agreement = look(other); agreement > enough)
       tried.push_back(
           {.listed = pose.listed, .pose = other, .cluster = pose.cluster, .agreement = agreement});
@@ -129,8 +129,8 @@ double PoseExaminer::agreement(const RecognitionModel& model, const Similarity& 
 
 void PoseExaminer::refine_roughly(const ListedModel& listed, ExaminedPose& pose) const {
   const RecognitionModel& model = listed.record;
-  pose.pose =
-      kernels::refined(model.samples, model.diagonal, pose.pose, tree_, tuning_.refinement.rough);
+  pose.pose = kernels::refine_pose(model.samples, model.diagonal, pose.pose, tree_,
+                                   tuning_.refinement.rough);
 }
 
 /// Keeps the first of poses that have become one.

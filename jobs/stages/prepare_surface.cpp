@@ -9,6 +9,8 @@
 
 #include "engine/stopwatch.hpp"
 #include "kernels/repair/decimation.hpp"
+#include "kernels/surface/circulators.hpp"
+#include "kernels/surface/vertex_rows.hpp"
 
 namespace semigeo::jobs {
 namespace {
@@ -39,16 +41,13 @@ void fill(PreparedSurface& prepared, std::int64_t max_edges, const engine::RunCo
 /// a look. The margin is for rounding; what is found does not depend on the limit.
 double search_limit(const Surface& surface, std::int32_t vertex, const Eigen::Vector3d& p) {
   double nearest2 = std::numeric_limits<double>::infinity();
-  const std::int32_t start = surface.outgoing[vertex];
-  std::int32_t h = start;
-  do {
+  for (const std::int32_t h : kernels::outgoing(surface, vertex)) {
     const auto& t = surface.triangles[kernels::face_of(h)];
     const Eigen::Vector3d q = kernels::nearest_on_triangle(p, surface.points[t[0]].cast<double>(),
                                                            surface.points[t[1]].cast<double>(),
                                                            surface.points[t[2]].cast<double>());
     nearest2 = std::min(nearest2, (p - q).squaredNorm());
-    h = surface.ccw(h);
-  } while (h != kernels::kNone && h != start);
+  }
   return 1.001 * std::sqrt(nearest2) + 1e-30;
 }
 
@@ -118,12 +117,9 @@ void decimate(PreparedSurface& prepared, const PreparationOptions& options,
   result.removed_faces = decimated.removed_faces;
   result.distance = measure(decimated, prepared.surface.points, context);
   if (!prepared.vertex_filled.empty()) {
-    std::vector<std::uint8_t> marks(decimated.source_vertex.size());
-    for (std::size_t v = 0; v < marks.size(); ++v)
-      marks[v] = prepared.vertex_filled[decimated.source_vertex[v]];
     prepared.face_filled =
         nearest_marks(decimated, prepared.surface, prepared.face_filled, context);
-    prepared.vertex_filled = std::move(marks);
+    prepared.vertex_filled = kernels::gathered(prepared.vertex_filled, decimated.source_vertex);
   }
   prepared.surface = std::move(decimated.surface);
 }

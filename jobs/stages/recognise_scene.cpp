@@ -287,8 +287,8 @@ class Recogniser {
       result_.objects.push_back(candidate_of(best));
       const ListedModel& listed = shortlist_[best.listed];
       const auto marks =
-          kernels::explained(*listed.tree, listed.record.diagonal, best.pose, scene_.samples,
-                             tuning_.objects.used, static_cast<std::int64_t>(used.size()));
+          kernels::samples_on_model(*listed.tree, listed.record.diagonal, best.pose, scene_.samples,
+                                    tuning_.objects.used, static_cast<std::int64_t>(used.size()));
       for (std::size_t i = 0; i < marks.size(); ++i) used[i] |= marks[i];
       left.erase(left.begin());
       for_each(left.size(), [&](std::size_t i) {

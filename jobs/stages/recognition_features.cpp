@@ -9,6 +9,7 @@
 #include "jobs/stages/level_features.hpp"
 #include "jobs/stages/surface_parameters.hpp"
 #include "kernels/recognition/surface_samples.hpp"
+#include "kernels/surface/bounding_box.hpp"
 #include "kernels/surface/vertex_order.hpp"
 
 namespace semigeo::jobs {
@@ -30,7 +31,7 @@ OrientedFeature oriented(const Feature& feature, FeatureKind kind, int level, fl
   result.normal = feature.normal;
   result.scale_free_gaussian = feature.scale_free_gaussian;
   result.scale_free_mean = feature.scale_free_mean;
-  result.value = feature.value * sigma * (kind == FeatureKind::gaussian ? sigma : 1);
+  result.value = feature.value * sigma * (kind == FeatureKind::kGaussian ? sigma : 1);
   result.code = kernels::feature_code(kind, feature.value > 0);
   result.level = static_cast<std::uint8_t>(level);
   return result;
@@ -38,12 +39,12 @@ OrientedFeature oriented(const Feature& feature, FeatureKind kind, int level, fl
 
 float strength(const OrientedFeature& feature, FeatureKind kind) {
   switch (kind) {
-    case FeatureKind::gaussian:
+    case FeatureKind::kGaussian:
       return std::abs(feature.scale_free_gaussian);
-    case FeatureKind::mean:
+    case FeatureKind::kMean:
       return std::abs(feature.scale_free_mean);
-    case FeatureKind::gaussian_torsion:
-    case FeatureKind::mean_torsion:
+    case FeatureKind::kGaussianTorsion:
+    case FeatureKind::kMeanTorsion:
       break;
   }
   return std::abs(feature.value);
@@ -79,14 +80,9 @@ void add_level(int level, double scale, const RecognitionParameters& parameters,
 
 void measure(const std::vector<Vector3f>& points, kernels::RecognitionModel& model) {
   if (points.empty()) return;
-  Vector3f low = points.front();
-  Vector3f high = low;
-  for (const Vector3f& p : points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  model.centre = 0.5F * (low + high);
-  model.diagonal = (high - low).norm();
+  const Eigen::AlignedBox3f box = kernels::bounding_box(points);
+  model.centre = box.center();
+  model.diagonal = box.sizes().norm();
 }
 
 using Triangles = std::vector<std::array<std::int32_t, 3>>;

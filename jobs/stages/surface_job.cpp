@@ -14,6 +14,7 @@
 #include "jobs/stages/level_features.hpp"
 #include "kernels/features/scale_selection.hpp"
 #include "kernels/surface/vertex_order.hpp"
+#include "kernels/surface/vertex_rows.hpp"
 
 namespace semigeo::jobs {
 namespace {

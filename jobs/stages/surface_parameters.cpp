@@ -66,7 +66,7 @@ Table evolution_rows() {
        .help = "How patches are laid: a base line and its perpendiculars, or rays",
        .value =
            choice(field<kGroup, &Options::coordinates>(),
-                  {{"semigeodesic", Coordinates::semigeodesic}, {"polar", Coordinates::polar}})},
+                  {{"semigeodesic", Coordinates::kSemigeodesic}, {"polar", Coordinates::kPolar}})},
       {.key = "schedule",
        .name = "schedule",
        .help = "Sample distance from level to level: the same, as in the thesis, or growing\n"

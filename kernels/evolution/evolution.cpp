@@ -55,7 +55,7 @@ EvolvedVertex evolve_vertex(const SampledSurface& surface, std::int32_t v,
                             const PatchLayout& layout) {
   const GeodesicMesh& mesh = surface.mesh;
   EvolvedVertex result{mesh.point(v), mesh.normals[v], mesh.normals[v], 0, 0, 0, {}};
-  const bool semigeodesic = layout.coordinates == Coordinates::semigeodesic;
+  const bool semigeodesic = layout.coordinates == Coordinates::kSemigeodesic;
   const std::int32_t first = layout.first == kNone ? first_edge(mesh, v) : layout.first;
   const PatchEstimate e = semigeodesic ? estimate_semigeodesic(surface, v, first, layout.step)
                                        : estimate_polar(surface, v, first, layout.step);

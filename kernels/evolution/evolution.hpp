@@ -8,38 +8,42 @@
 
 namespace semigeo::kernels {
 
-/// Below this share of the Gaussian's weight a vertex is invalid: it has no curvature.
+/// The share of the Gaussian's weight below which a vertex is invalid: it has no curvature.
 inline constexpr float kMinCompleteness = 0.25f;
 
-/// Area of the convolved tangents r_u x r_v, 1 on a plane, below which a patch has folded up on
-/// itself: a sphere as small as the step has 0.37. Such a vertex is invalid too.
+/// The area of the convolved tangents, |r_u x r_v|, below which a vertex is invalid because its
+/// patch has folded up on itself. The area is 1 on a plane, and 0.37 on a sphere as small as the
+/// step.
 inline constexpr float kMinTangentArea = 0.1f;
 
-enum class Coordinates { semigeodesic, polar };
+/// Tells which coordinates a patch samples: thesis 4.1.2 or 4.1.3.
+enum class Coordinates { kSemigeodesic, kPolar };
 
-/// How a vertex' patch is laid.
+/// Tells how the patch of a vertex is laid.
 struct PatchLayout {
-  float step = 1;                                       ///< sample distance, units of points
-  Coordinates coordinates = Coordinates::semigeodesic;  ///< thesis 4.1.2 or 4.1.3
-  std::int32_t first = kNone;  ///< half-edge from the vertex; kNone: `first_edge`
-  bool principal = false;      ///< principal curvatures as well
+  float step = 1;  ///< Distance of the samples, in the units of the points.
+  Coordinates coordinates = Coordinates::kSemigeodesic;
+  std::int32_t first = kNone;  ///< Half-edge from the vertex; kNone stands for `first_edge`.
+  bool principal = false;      ///< Whether principal curvatures are wanted.
 };
 
-/// What one patch tells of its vertex: the curvature of this level, and the next level's place.
+/// Holds what one patch tells of its vertex: the curvature on this level, and the place on the next
+/// one.
 struct EvolvedVertex {
-  Eigen::Vector3f position;         ///< smoothed, same frame and units as the points
-  Eigen::Vector3f smoothed_normal;  ///< unit, of the smoothed surface
-  Eigen::Vector3f normal;           ///< unit, of the surface that K and H belong to
-  float gaussian_curvature;         ///< length^-2, 0 if invalid
-  float mean_curvature;             ///< length^-1, 0 if invalid
-  float patch_completeness;         ///< 1 = whole patch; 0 = invalid
-  PrincipalCurvatures principal;    ///< all zero if invalid or not asked for
+  Eigen::Vector3f position;         ///< Smoothed place, as the points.
+  Eigen::Vector3f smoothed_normal;  ///< Unit normal of the smoothed surface.
+  Eigen::Vector3f normal;           ///< Unit normal of the surface of K and H.
+  float gaussian_curvature;         ///< In length^-2; 0 if invalid.
+  float mean_curvature;             ///< In length^-1; 0 if invalid.
+  float patch_completeness;         ///< 1 for a whole patch, 0 if invalid.
+  PrincipalCurvatures principal;    ///< All zero if invalid or not wanted.
 };
 
-/// Traces the patch of vertex v once and draws everything from it: K and H, the position on the
+/// Traces the patch of vertex v once and computes everything from it: K and H, the position on the
 /// next level, and the normal there. An invalid vertex still moves as far as its samples say, but
-/// keeps its normal. All results are finite.
-/// Source: thesis 5.3 - 5.6. Differs: K and H are those of the surface itself, not of the smoothed
+/// keeps its normal. All results are finite. Source: thesis 5.3 - 5.6.
+///
+/// Differs: K and H are those of the surface itself, not of the smoothed
 /// one, and come from the full fundamental forms, except for semigeodesic patches on flat faces,
 /// which follow the thesis' (4.9) and (4.10).
 EvolvedVertex evolve_vertex(const SampledSurface& surface, std::int32_t v,

@@ -6,23 +6,11 @@
 #include <cmath>
 #include <numeric>
 
+#include "kernels/surface/circulators.hpp"
 #include "kernels/surface/nearest_surface.hpp"
 
 namespace semigeo::kernels {
 namespace {
-
-/// Calls test(w) for the neighbours of v until it returns true. result: whether it did.
-template <typename Test>
-bool any_neighbour(const Connectivity& surface, std::int32_t v, const Test& test) {
-  const std::int32_t start = surface.outgoing[v];
-  for (std::int32_t h = start;;) {
-    if (test(surface.target(h))) return true;
-    const std::int32_t following = surface.ccw(h);
-    if (following == kNone) return test(surface.origin(prev(h)));
-    if (following == start) return false;
-    h = following;
-  }
-}
 
 /// Whether two edges no longer than `radius` together lead to a comparable vertex that is higher.
 /// Along the surface it is not farther; most that are no maximum are found out here, at a tenth of
@@ -32,12 +20,14 @@ bool outdone_two_edges_away(const Connectivity& surface, std::span<const Eigen::
   const auto length = [&](std::int32_t a, std::int32_t b) {
     return (points[b] - points[a]).cast<double>().norm();
   };
-  return any_neighbour(surface, v, [&](std::int32_t u) {
+  for (const std::int32_t u : neighbours(surface, v)) {
     const double rest = radius - length(v, u);
-    return rest > 0 && any_neighbour(surface, u, [&](std::int32_t w) {
-             return w != v && field.comparable(v, w) && field.higher(w, v) && length(u, w) <= rest;
-           });
-  });
+    if (!(rest > 0)) continue;
+    for (const std::int32_t w : neighbours(surface, u))
+      if (w != v && field.comparable(v, w) && field.higher(w, v) && length(u, w) <= rest)
+        return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -45,10 +35,8 @@ bool outdone_two_edges_away(const Connectivity& surface, std::span<const Eigen::
 std::int32_t uphill(const Connectivity& surface, const CurvatureField& field, std::int32_t v) {
   if (!field.comparable(v, v)) return kNone;
   std::int32_t best = v;
-  any_neighbour(surface, v, [&](std::int32_t w) {
+  for (const std::int32_t w : neighbours(surface, v))
     if (field.comparable(v, w) && field.higher(w, best)) best = w;
-    return false;
-  });
   return best;
 }
 
@@ -71,43 +59,36 @@ Summit summit(const Connectivity& surface, std::span<const Eigen::Vector4f> poin
     return points[w].head<3>().cast<double>();
   };
   float least = field.magnitude(v);
-  any_neighbour(surface, v, [&](std::int32_t w) {
+  for (const std::int32_t w : neighbours(surface, v))
     if (field.comparable(v, w)) least = std::min(least, field.magnitude(w));
-    return false;
-  });
   double weights = field.magnitude(v) - least;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // relative to v
-  any_neighbour(surface, v, [&](std::int32_t w) {
-    if (!field.comparable(v, w)) return false;
+  for (const std::int32_t w : neighbours(surface, v)) {
+    if (!field.comparable(v, w)) continue;
     weights += field.magnitude(w) - least;
     sum += static_cast<double>(field.magnitude(w) - least) * (point(w) - point(v));
-    return false;
-  });
+  }
 
   Summit best{{v, v, v}, {1, 0, 0}};
   if (!(weights > 0)) return best;
   const Eigen::Vector3d centroid = point(v) + sum / weights;
   double nearest2 = (centroid - point(v)).squaredNorm();
-  const std::int32_t start = surface.outgoing[v];
-  std::int32_t h = start;
-  do {
+  for (const std::int32_t h : outgoing(surface, v)) {
     const std::int32_t a = surface.target(h);
     const std::int32_t b = surface.origin(prev(h));
     const Eigen::Vector3d on_face = nearest_on_triangle(centroid, point(v), point(a), point(b));
     const Eigen::Vector3d normal = (point(a) - point(v)).cross(point(b) - point(v));
     const double distance2 = (on_face - centroid).squaredNorm();
-    if (distance2 < nearest2 && normal.squaredNorm() > 0) {
-      nearest2 = distance2;
-      const auto share = [&](std::int32_t p, std::int32_t q) {
-        const double area = (point(p) - on_face).cross(point(q) - on_face).dot(normal);
-        return static_cast<float>(std::clamp(area / normal.squaredNorm(), 0.0, 1.0));
-      };
-      const float at_a = share(b, v);
-      const float at_b = std::min(share(v, a), 1 - at_a);
-      best = {{v, a, b}, {1 - at_a - at_b, at_a, at_b}};
-    }
-    h = surface.ccw(h);
-  } while (h != kNone && h != start);
+    if (!(distance2 < nearest2 && normal.squaredNorm() > 0)) continue;
+    nearest2 = distance2;
+    const auto share = [&](std::int32_t p, std::int32_t q) {
+      const double area = (point(p) - on_face).cross(point(q) - on_face).dot(normal);
+      return static_cast<float>(std::clamp(area / normal.squaredNorm(), 0.0, 1.0));
+    };
+    const float at_a = share(b, v);
+    const float at_b = std::min(share(v, a), 1 - at_a);
+    best = {{v, a, b}, {1 - at_a - at_b, at_a, at_b}};
+  }
   return best;
 }
 
@@ -132,17 +113,14 @@ std::vector<float> prominences(const Connectivity& surface, const CurvatureField
   // one number each: the height, whose bits are in the order of positive floats, upside down, and
   // the half-edge.
   std::vector<std::uint64_t> passes;
-  for (std::int32_t f = 0; f < surface.face_count(); ++f)
-    for (int i = 0; i < 3; ++i) {
-      const std::int32_t h = halfedge(f, i);
-      if (surface.twin[h] > h) continue;  // seen from the other side
-      const std::int32_t v = surface.origin(h);
-      const std::int32_t w = surface.target(h);
-      if (peaks[v] == peaks[w] || !field.comparable(v, w)) continue;
-      const float height = std::min(field.magnitude(v), field.magnitude(w));
-      passes.push_back(std::uint64_t{~std::bit_cast<std::uint32_t>(height)} << 32 |
-                       static_cast<std::uint32_t>(h));
-    }
+  for (const std::int32_t h : edges(surface)) {
+    const std::int32_t v = surface.origin(h);
+    const std::int32_t w = surface.target(h);
+    if (peaks[v] == peaks[w] || !field.comparable(v, w)) continue;
+    const float height = std::min(field.magnitude(v), field.magnitude(w));
+    passes.push_back(std::uint64_t{~std::bit_cast<std::uint32_t>(height)} << 32 |
+                     static_cast<std::uint32_t>(h));
+  }
   std::sort(passes.begin(), passes.end());
 
   // The sea falls: at each pass the lower of two islands becomes part of the higher one.

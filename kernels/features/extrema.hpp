@@ -12,44 +12,44 @@
 
 namespace semigeo::kernels {
 
-/// K or H on the vertices of a level.
+/// Holds K or H on the vertices of a level.
 struct CurvatureField {
-  std::span<const float> values;        ///< (N)
-  std::span<const float> completeness;  ///< (N) of the patches
-  float min_completeness = 0.6f;        ///< vertices with less take no part
-  float flat = 0;                       ///< what is smaller counts as zero
+  std::span<const float> values;        ///< (N) K or H.
+  std::span<const float> completeness;  ///< (N) Completeness of the patches.
+  float min_completeness = 0.6f;        ///< Vertices with less take no part.
+  float flat = 0;                       ///< Magnitudes up to this count as zero.
 
-  bool counts(std::int32_t v) const { return completeness[v] >= min_completeness; }
+  bool takes_part(std::int32_t v) const { return completeness[v] >= min_completeness; }
   float magnitude(std::int32_t v) const { return std::abs(values[v]); }
-  /// Both take part, neither is zero, and they bend the same way.
+  /// Tells whether both vertices take part, neither is zero, and they have the same sign.
   bool comparable(std::int32_t v, std::int32_t w) const {
-    return counts(v) && counts(w) && magnitude(v) > flat && magnitude(w) > flat &&
+    return takes_part(v) && takes_part(w) && magnitude(v) > flat && magnitude(w) > flat &&
            (values[v] > 0) == (values[w] > 0);
   }
-  /// A strict order: of equal magnitudes the vertex with the lower number is the higher.
+  /// Tells whether v is higher than w. The order is strict: where magnitudes are equal, the vertex
+  /// with the lower number is the higher one.
   bool higher(std::int32_t v, std::int32_t w) const {
     return magnitude(v) != magnitude(w) ? magnitude(v) > magnitude(w) : v < w;
   }
 };
 
-/// The highest of v and its comparable neighbours: the next step of the steepest ascent in
-/// |value|. v itself at a peak; kNone if v takes no part or is zero.
+/// Returns the highest of v and its comparable neighbours: the next step of the steepest ascent in
+/// |value|. It is v itself at a peak, and kNone if v takes no part or is zero.
 std::int32_t uphill(const Connectivity& surface, const CurvatureField& field, std::int32_t v);
 
-/// Whether no comparable vertex within `radius` (units of the points) of the peak v is higher. The
-/// ring of neighbours always counts; radius 0 is the thesis' rule.
-/// Source: thesis 5.6.1. Differs: compares only values of the same sign, so that a ridge beside a
-/// deeper valley is a feature too, and within a radius, so that features do not depend on the
-/// triangulation.
+/// Tells whether v is a peak and no comparable vertex within `radius` (units of the points) is
+/// higher. The neighbours always count; radius 0 is the rule of the thesis. Source: thesis 5.6.1.
+/// Differs: only values of the same sign are compared, so that a ridge beside a deeper valley is a
+/// feature, too, and within a radius, so that features do not depend on the triangulation.
 bool is_maximum(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
                 const CurvatureField& field, std::int32_t v, double radius, GeodesicBall& ball);
 
-/// Where a maximum lies: a point of a face at the peak.
+/// Tells where a maximum lies: at a point of a face that touches the peak.
 struct Summit {
   std::array<std::int32_t, 3> corners = {kNone, kNone, kNone};
-  std::array<float, 3> weights = {1, 0, 0};  ///< sum to 1
+  std::array<float, 3> weights = {1, 0, 0};  ///< Barycentric coordinates; their sum is 1.
 
-  /// Of values at all vertices, the one here.
+  /// Interpolates values of all vertices at this point.
   template <typename Values>
   auto of(const Values& values) const {
     using Value = typename Values::value_type;
@@ -58,21 +58,21 @@ struct Summit {
   }
 };
 
-/// Where on the faces round the peak v the maximum lies, of which v is but the nearest sample: at
-/// the centroid of v and its comparable neighbours, weighted by how far they rise above the least
-/// of them, moved onto the surface.
-/// Differs: the thesis takes the vertex (5.6.1). Another triangulation has other vertices; this
-/// point reappears more often (bench/repeatability).
+/// Returns where on the faces round the peak v the maximum lies; v is only the nearest sample of
+/// it. The place is the centroid of v and its comparable neighbours, weighted by how far they rise
+/// above the least of them, moved onto the surface. Differs: the thesis takes the vertex (5.6.1).
+/// Another triangulation has other vertices; this point reappears more often (bench/repeatability).
 Summit summit(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
               const CurvatureField& field, std::int32_t v);
 
-/// For each vertex the peak at which its steepest ascent ends, or kNone. `uphill`: (N) results of
-/// that function; is used up. Linear cost.
+/// Returns for each vertex (N) the peak at which its steepest ascent ends, or kNone. `uphill` holds
+/// the results of that function for all vertices (N). The cost is linear.
 std::vector<std::int32_t> peaks_of(std::vector<std::int32_t> uphill);
 
-/// How much |value| falls from each peak on the way to the nearest higher one: to the highest pass
-/// between them, among comparable vertices; all of it if no higher one can be reached. result: (N),
-/// 0 at all vertices that are no peak. `peaks`: of each vertex.
+/// Returns the prominence of each vertex (N): how much |value| falls from a peak on the way to a
+/// higher one, down to the highest pass between them, among comparable vertices. It is the whole
+/// |value| if no higher peak can be reached, and 0 at all vertices that are no peak. `peaks` (N)
+/// are the results of `peaks_of`. The cost is that of sorting the passes.
 std::vector<float> prominences(const Connectivity& surface, const CurvatureField& field,
                                std::span<const std::int32_t> peaks);
 

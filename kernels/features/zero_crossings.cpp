@@ -16,7 +16,7 @@ bool positive(const CurvatureField& field, std::int32_t v) {
 
 bool crossed(const Connectivity& surface, const CurvatureField& field, std::int32_t f) {
   const auto& t = surface.triangles[f];
-  if (!field.counts(t[0]) || !field.counts(t[1]) || !field.counts(t[2])) return false;
+  if (!field.takes_part(t[0]) || !field.takes_part(t[1]) || !field.takes_part(t[2])) return false;
   const bool first = positive(field, t[0]);
   return positive(field, t[1]) != first || positive(field, t[2]) != first;
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "kernels/surface/circulators.hpp"
+
 namespace semigeo::kernels {
 namespace {
 
@@ -72,16 +74,13 @@ Eigen::Vector3f angle_weighted_normal(const Connectivity& surface,
                                       std::span<const Eigen::Vector4f> points, std::int32_t v) {
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   const Eigen::Vector3f p = points[v].head<3>();
-  const std::int32_t start = surface.outgoing[v];
-  std::int32_t h = start;
-  do {
+  for (const std::int32_t h : outgoing(surface, v)) {
     const Eigen::Vector3f a = points[surface.target(h)].head<3>() - p;
     const Eigen::Vector3f b = points[surface.origin(prev(h))].head<3>() - p;
     const Eigen::Vector3f cross = a.cross(b);
     const float area = cross.norm();
     if (area > 0) sum += std::atan2(area, a.dot(b)) / area * cross;  // (5.1)
-    h = surface.ccw(h);
-  } while (h != kNone && h != start);
+  }
   const float norm = sum.norm();
   return norm > 0 ? Eigen::Vector3f(sum / norm) : Eigen::Vector3f::Zero();
 }

@@ -8,16 +8,16 @@
 
 namespace semigeo::kernels {
 
-/// One sample of a patch: parameters in steps, the area of parameters that it stands for in
-/// steps^2, position relative to the patch's vertex as (x, y, z, 0).
+/// Describes one sample of a patch.
 struct PatchSample {
-  float u;
-  float v;
-  float area;
-  Eigen::Vector4f position;
+  float u;                   ///< In steps.
+  float v;                   ///< In steps.
+  float area;                ///< Area of parameters that the sample stands for, in steps^2.
+  Eigen::Vector4f position;  ///< Relative to the vertex of the patch, as (x, y, z, 0).
 };
 
-/// The existing samples of a patch of either kind, in no particular order; no allocation.
+/// Holds the existing samples of a patch of either kind, in no particular order, without
+/// allocation.
 class PatchSamples {
  public:
   static constexpr std::size_t kCapacity = kTaps * kTaps;

@@ -8,7 +8,7 @@
 
 namespace semigeo::kernels {
 
-/// Three features as points with normals, corner by corner.
+/// Returns three features as points with normals, corner by corner.
 inline OrientedTriangle feature_triangle(const OrientedFeatures& features,
                                          const std::array<std::uint16_t, 3>& corners) {
   OrientedTriangle triangle;

@@ -9,22 +9,24 @@
 
 namespace semigeo::kernels {
 
-/// Which features lie nearest to each of a level's, within a band of distances.
+/// Finds the features that lie nearest to each feature of a level, within a band of distances.
 class NearFeatures {
  public:
-  /// Looks again, at other features; memory stays. Distances in length units, both included; of
-  /// each feature at most `most` are kept. Cost: the square of the features, 0.3 ns each.
+  /// Finds the nearest features of each feature, at most `most`, at distances from `nearest` to
+  /// `farthest` (length units, both included). The memory is kept for the next call. The cost is
+  /// 0.3 ns for each two features.
   void find(std::span<const OrientedFeature> of_level, double nearest, double farthest, int most);
 
-  /// Places in `of_level`, the nearer first; of equally near ones the earlier.
+  /// Returns the neighbours of feature i as places in `of_level`, the nearest first; where two are
+  /// equally near, the earlier one comes first.
   std::span<const std::uint16_t> of(std::size_t i) const {
     return std::span(near_).subspan(first_[i], first_[i + 1] - first_[i]);
   }
 
  private:
-  std::array<std::vector<float>, 3> places_;  ///< axis by axis
-  std::vector<float> squared_;                ///< distances from the feature at hand
-  std::vector<std::uint64_t> in_band_;        ///< squared distance, feature
+  std::array<std::vector<float>, 3> places_;  ///< Coordinates, axis by axis.
+  std::vector<float> squared_;                ///< Squared distances from one feature.
+  std::vector<std::uint64_t> in_band_;        ///< Squared distance and feature, as one number.
   std::vector<std::uint16_t> near_;
   std::vector<std::size_t> first_;
 };

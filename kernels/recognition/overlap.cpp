@@ -205,9 +205,9 @@ Overlap overlap(const SurfaceSamples& model, double diagonal, const Similarity& 
           .stability = Slippage(matched).stability()};
 }
 
-std::vector<Similarity> turned(const SurfaceSamples& model, double diagonal, const Similarity& pose,
-                               const SampleTree& tree, const OverlapOptions& options,
-                               std::int64_t count) {
+std::vector<Similarity> symmetric_poses(const SurfaceSamples& model, double diagonal,
+                                        const Similarity& pose, const SampleTree& tree,
+                                        const OverlapOptions& options, std::int64_t count) {
   constexpr int kTurns = 36;
   constexpr double kFree = 0.02;  // a handle holds a cup by no more
   std::vector<Similarity> result;
@@ -229,16 +229,16 @@ std::vector<Similarity> turned(const SurfaceSamples& model, double diagonal, con
   for (std::size_t i = 0; i < n; ++i)
     if (const Contact c = posed.contact(i, posed.tolerance()); c.matches)
       matched.push_back(c.posed);
-  if (const std::optional<Axis> axis = Slippage(matched).free_turn(kFree))
+  if (const std::optional<Axis> axis = Slippage(matched).free_rotation(kFree))
     for (int k = 1; k < kTurns; ++k)
       result.push_back(turn_about(*axis, 2 * std::numbers::pi * k / kTurns) * pose);
   return result;
 }
 
-std::vector<std::uint8_t> explained(const SampleTree& model, double diagonal,
-                                    const Similarity& pose, const SurfaceSamples& scene,
-                                    const OverlapOptions& options, std::int64_t count,
-                                    std::span<const std::uint8_t> used) {
+std::vector<std::uint8_t> samples_on_model(const SampleTree& model, double diagonal,
+                                           const Similarity& pose, const SurfaceSamples& scene,
+                                           const OverlapOptions& options, std::int64_t count,
+                                           std::span<const std::uint8_t> used) {
   const FastPose back(pose.inverse());
   const auto tolerance = static_cast<float>(options.match * diagonal);
   const float spacing = model.samples().spacing;
@@ -257,8 +257,8 @@ std::vector<std::uint8_t> explained(const SampleTree& model, double diagonal,
   return result;
 }
 
-Similarity refined(const SurfaceSamples& model, double diagonal, const Similarity& start,
-                   const SampleTree& scene, const RefineOptions& options) {
+Similarity refine_pose(const SurfaceSamples& model, double diagonal, const Similarity& start,
+                       const SampleTree& scene, const RefineOptions& options) {
   using Matrix7d = Eigen::Matrix<double, 7, 7>;
   constexpr int kFewest = 12;
   const std::size_t n = bounded(options.count, model);

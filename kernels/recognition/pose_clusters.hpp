@@ -9,53 +9,55 @@
 
 namespace semigeo::kernels {
 
-/// One match's opinion on where a model is.
+/// Tells where a model is according to one match.
 struct PoseVote {
-  Similarity pose;  ///< model to scene
+  Similarity pose;  ///< From the model to the scene.
   double weight = 0;
 };
 
+/// Describes poses that agree.
 struct PoseCluster {
-  Similarity pose;    ///< mean of its members
-  double weight = 0;  ///< of its members together
+  Similarity pose;    ///< Mean of its members.
+  double weight = 0;  ///< Weight of its members together.
   std::int64_t members = 0;
 };
 
-/// When two poses agree.
+/// Tells how much poses may differ that agree.
 struct PoseTolerance {
-  double log_scale = 0.2;  ///< logarithm of the scale
-  double distance = 0.1;   ///< place of the model's centre, in diagonals of the posed model
-  double angle = 0.3;      ///< rotation, in radians
+  double log_scale = 0.2;  ///< Logarithm of the scale.
+  double distance = 0.1;   ///< Place of the model's centre, in diagonals of the posed model.
+  double angle = 0.3;      ///< Rotation, in radians.
 };
 
 struct ClusterOptions {
   PoseTolerance tolerance = {};
-  int seeds = 600;  ///< at most so many poses are tried: half by weight, half spread
-  int most = 120;   ///< clusters wanted
+  int seeds = 600;  ///< Number of poses tried: half of them by weight, half spread.
+  int most = 120;   ///< Greatest number of clusters.
 };
 
-/// The votes of one model, 40 bytes each.
-/// Source: thesis 4.6. Differs: a cluster is all that agrees with its seed, taken about the best
-/// seeds, instead of growing from the first pose that comes; poses are similarities.
+/// Holds the votes of one model, 40 bytes each. Source: thesis 4.6. Differs: a cluster is all that
+/// agrees with its seed, taken about the best seeds, instead of growing from the first pose that
+/// comes; poses are similarities.
 class PoseVotes {
  public:
   PoseVotes() = default;
-  /// `centre` and `diagonal` are the model's.
+  /// Takes votes. `centre` and `diagonal` are those of the model's bounding box.
   PoseVotes(std::span<const PoseVote> votes, const Eigen::Vector3d& centre, double diagonal);
 
-  /// Groups of poses that agree, the heaviest first; what agrees with the seed of a heavier one is
-  /// none. Cost: seeds times votes. Depends on the order of the votes, but on no chance.
+  /// Returns groups of poses that agree, the heaviest first. Poses that agree with the seed of a
+  /// heavier cluster are no seeds. The cost is seeds times votes. The result depends on the order
+  /// of the votes, but not on chance.
   std::vector<PoseCluster> clusters(const ClusterOptions& options = {}) const;
 
-  /// Weight of the votes that agree with a pose.
+  /// Returns the weight of the votes that agree with a pose.
   double support(const Similarity& pose, const PoseTolerance& tolerance) const;
 
  private:
-  /// A pose as three things that can be compared.
+  /// A pose as three quantities that can be compared.
   struct Placement {
     float log_scale;
     Eigen::Vector3f centre;
-    Eigen::Vector4f rotation;  ///< quaternion
+    Eigen::Vector4f rotation;  ///< Unit quaternion.
     float weight;
   };
   Placement placement(const Similarity& pose, double weight) const;
@@ -67,7 +69,7 @@ class PoseVotes {
 
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
   float diagonal_ = 0;
-  std::vector<Placement> placements_;  ///< by scale, so that what may agree is one range
+  std::vector<Placement> placements_;  ///< Sorted by scale, so that what may agree is one range.
 };
 
 }  // namespace semigeo::kernels

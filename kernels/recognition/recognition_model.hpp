@@ -9,22 +9,22 @@
 
 namespace semigeo::kernels {
 
-/// Points spread evenly over a surface, with its unit normals there.
+/// Holds points spread evenly over a surface, with its unit normals there.
 struct SurfaceSamples {
-  std::vector<Eigen::Vector3f> points;   ///< (M) length units
-  std::vector<Eigen::Vector3f> normals;  ///< (M)
-  float spacing = 0;                     ///< square root of the area that each stands for
-  std::vector<std::uint8_t> rim = {};    ///< (M) 1: near the boundary; empty: there is none
+  std::vector<Eigen::Vector3f> points;   ///< (M) In length units.
+  std::vector<Eigen::Vector3f> normals;  ///< (M) Of unit length.
+  float spacing = 0;                     ///< Square root of the area that each stands for.
+  std::vector<std::uint8_t> rim = {};    ///< (M) 1 near the boundary; empty without one.
 };
 
-/// What a library knows of an object.
+/// Holds what a library knows of an object.
 struct RecognitionModel {
-  std::string name;    ///< of its dataset
-  std::string digest;  ///< content digest of its dataset
+  std::string name;    ///< Name of its dataset.
+  std::string digest;  ///< Content digest of its dataset.
   std::string length_unit = "unknown";
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< add it for the scan's coordinates
-  Eigen::Vector3f centre = Eigen::Vector3f::Zero();  ///< of the bounding box
-  float diagonal = 0;                                ///< of the bounding box
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< Added, it gives the scan's coordinates.
+  Eigen::Vector3f centre = Eigen::Vector3f::Zero();  ///< Centre of the bounding box.
+  float diagonal = 0;                                ///< Diagonal of the bounding box.
   OrientedFeatures features;
   SurfaceSamples samples;
 };

@@ -5,7 +5,7 @@
 
 namespace semigeo::kernels {
 
-/// x -> scale * rotation * x + translation.
+/// A similarity transform: x becomes scale * rotation * x + translation.
 struct Similarity {
   double scale = 1;
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
@@ -15,33 +15,36 @@ struct Similarity {
     return scale * (rotation * p) + translation;
   }
   Similarity inverse() const;
-  Eigen::Matrix4d matrix() const;  ///< row by row, for column vectors
+  /// Returns the 4 x 4 matrix for homogeneous column vectors.
+  Eigen::Matrix4d matrix() const;
 };
 
-/// first after second.
+/// Returns the similarity that applies `second` and then `first`.
 Similarity operator*(const Similarity& first, const Similarity& second);
 
-/// Angle of the rotation that leads from one to the other, in radians, 0 to pi.
+/// Returns the angle of the rotation that leads from one to the other, in radians, 0 to pi.
 double rotation_between(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b);
 
-/// gamma, beta, alpha with R = Rz(alpha) Ry(beta) Rx(gamma), radians. Where beta is a quarter turn
+/// Holds angles in radians with R = Rz(alpha) Ry(beta) Rx(gamma). Where beta is a quarter turn,
 /// gamma is 0. Source: thesis 4.6, (4.21).
 struct EulerAngles {
   double gamma = 0;
   double beta = 0;
   double alpha = 0;
 };
+/// Returns the Euler angles of a rotation.
 EulerAngles euler_angles(const Eigen::Matrix3d& rotation);
 
-/// Three points with unit normals.
+/// Holds three points with unit normals.
 struct OrientedTriangle {
   std::array<Eigen::Vector3d, 3> points;
   std::array<Eigen::Vector3d, 3> normals;
 };
 
-/// The similarity that takes `from` to `to`, corner by corner: scale from the perimeters, rotation
-/// from edges and normals together, centroid to centroid. Exact where there is an exact one.
-/// Source: thesis 4.6, (4.19), (4.20). Differs: (4.19) is singular, its reduced form affine.
+/// Returns the similarity that takes `from` to `to`, corner by corner. The scale comes from the
+/// perimeters, the rotation from edges and normals together, the translation from the centroids.
+/// The result is exact where there is an exact one. Source: thesis 4.6, (4.19), (4.20). Differs:
+/// (4.19) is singular, its reduced form affine.
 Similarity similarity_between(const OrientedTriangle& from, const OrientedTriangle& to);
 
 }  // namespace semigeo::kernels

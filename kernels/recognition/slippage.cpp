@@ -45,7 +45,7 @@ double Slippage::stability() const {
   return held_[1];
 }
 
-std::optional<Axis> Slippage::free_turn(double most) const {
+std::optional<Axis> Slippage::free_rotation(double most) const {
   const Vector3d turn = least_.head<3>();
   const Vector3d shift = least_.segment<3>(3);
   if (held_[0] > most || turn.squaredNorm() < kLeastTurn) return std::nullopt;

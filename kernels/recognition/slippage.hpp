@@ -6,46 +6,48 @@
 
 namespace semigeo::kernels {
 
-/// A point of a surface and the unit normal there.
+/// Holds a point of a surface and the unit normal there.
 struct OrientedPoint {
   Eigen::Vector3f point;
   Eigen::Vector3f normal;
 };
 
+/// Holds what a plane says on turning (first three), shifting (next three) and growing (last).
 using Constraint = Eigen::Matrix<double, 7, 1>;
 
-/// How the distance of a point from its plane changes when it turns (first three), shifts (three)
-/// and grows (last) about a middle; `arm` leads from there to the point.
+/// Returns how the distance of a point from its plane changes when the surface turns, shifts and
+/// grows about a middle; `arm` leads from there to the point.
 Constraint plane_constraint(const Eigen::Vector3d& arm, const Eigen::Vector3d& normal);
 
-/// A line to turn about.
+/// Describes the axis of a rotation.
 struct Axis {
   Eigen::Vector3d point;
-  Eigen::Vector3d direction;  ///< unit
+  Eigen::Vector3d direction;  ///< Of unit length.
 };
 
-/// In which ways a surface can slip along itself: motions that leave its points in their planes.
-/// Seven numbers tell how firmly it is held, 0 where it slips; without unit, as arms are in radii
-/// about the middle. A surface of revolution slips in one way, cylinders and cones in two, planes
-/// and spheres in more. A surface that slips in two is no proof of where a model lies.
-/// Source: Gelfand et al. 2003 (stable ICP), Gelfand and Guibas 2004. Differs: it may grow, too.
+/// Tells in which ways a surface can slip along itself, that is, by which motions its points stay
+/// in their planes. Seven numbers say how firmly it is held, 0 where it slips; they have no unit,
+/// as arms are in radii about the middle. A surface of revolution slips in one way, cylinders and
+/// cones in two, planes and spheres in more. A surface that slips in two ways is no proof of where
+/// a model lies. Source: Gelfand et al. 2003 (stable ICP), Gelfand and Guibas 2004. Differs: it may
+/// grow, too.
 class Slippage {
  public:
-  /// Of no points: held by nothing.
+  /// Examines a surface. Without points it is held by nothing.
   explicit Slippage(std::span<const OrientedPoint> surface);
 
-  /// The second smallest of the seven.
+  /// Returns the second smallest of the seven numbers.
   double stability() const;
 
-  /// What it can turn about along itself, if the way in which it is held least is a turn, and held
-  /// by no more than `most`.
-  std::optional<Axis> free_turn(double most) const;
+  /// Returns the axis about which the surface can turn along itself. The result is empty unless the
+  /// motion that is held least is a rotation, and is held by no more than `most`.
+  std::optional<Axis> free_rotation(double most) const;
 
  private:
   Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();
   double radius_ = 0;
-  Constraint held_ = Constraint::Zero();   ///< ascending
-  Constraint least_ = Constraint::Zero();  ///< the motion that is held least, of length 1
+  Constraint held_ = Constraint::Zero();   ///< The seven numbers, ascending.
+  Constraint least_ = Constraint::Zero();  ///< The motion that is held least, of length 1.
 };
 
 }  // namespace semigeo::kernels

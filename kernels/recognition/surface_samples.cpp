@@ -2,11 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <utility>
 
 #include "kernels/recognition/overlap.hpp"
+#include "kernels/surface/bounding_box.hpp"
 #include "kernels/surface/radix_sort.hpp"
 #include "kernels/surface/z_order.hpp"
 
@@ -15,9 +17,9 @@ namespace {
 
 using Eigen::Vector3f;
 
-using Triangles = std::span<const std::array<std::int32_t, 3>>;
+using Triangles = std::span<const Triangle>;
 
-double area_of(std::span<const Vector3f> points, const std::array<std::int32_t, 3>& triangle) {
+double area_of(std::span<const Vector3f> points, const Triangle& triangle) {
   const Eigen::Vector3d p = points[triangle[0]].cast<double>();
   const Eigen::Vector3d u = points[triangle[1]].cast<double>() - p;
   const Eigen::Vector3d v = points[triangle[2]].cast<double>() - p;
@@ -26,17 +28,12 @@ double area_of(std::span<const Vector3f> points, const std::array<std::int32_t, 
 
 /// Faces along a Z-order curve: equal steps of area along it are spread evenly in space.
 std::vector<std::int32_t> along_curve(std::span<const Vector3f> points, Triangles triangles) {
-  Vector3f low = points.front();
-  Vector3f high = low;
-  for (const Vector3f& p : points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const float cell = std::max((high - low).maxCoeff(), 1e-30F) / 1023;
+  const Eigen::AlignedBox3f box = bounding_box(points);
+  const float cell = std::max(box.sizes().maxCoeff(), 1e-30F) / 1023;
   std::vector<std::uint64_t> keys;  // place along the curve, face
   keys.reserve(triangles.size());
   for (const auto& [a, b, c] : triangles) {
-    const Vector3f place = ((points[a] + points[b] + points[c]) / 3 - low) / cell;
+    const Vector3f place = ((points[a] + points[b] + points[c]) / 3 - box.min()) / cell;
     std::uint64_t key = 0;
     for (int axis = 0; axis < 3; ++axis)
       key |= spread_bits(static_cast<std::uint64_t>(place[axis])) << axis;

@@ -11,40 +11,41 @@
 namespace semigeo::kernels {
 
 struct LoopSplitOptions {
-  /// Least ratio of a split: smallest distance of another vertex to the splitting plane, over the
-  /// length of the splitting line.
+  /// The least ratio of a split: the smallest distance of another vertex to the splitting plane,
+  /// over the length of the splitting line.
   double min_ratio = 1e-6;
-  /// Where no plane separates the two sub-loops, accept a splitting line that neither of them
-  /// crosses, seen along the average normal.
+  /// Tells whether, where no plane separates the two sub-loops, a splitting line will do that
+  /// neither of them crosses, seen along the average normal.
   bool allow_diagonals = true;
 };
 
 /// Covers a closed loop of points with triangles, by splitting it in two again and again until all
 /// sub-loops have three edges. A split is a plane through two vertices along the average normal of
-/// the loop; it is valid only if the two sub-loops lie on opposite sides of it, and of the valid
-/// ones the best ratio (see LoopSplitOptions) is taken first. Source: thesis 5.1.
+/// the loop. It is valid only if the two sub-loops lie on opposite sides of it, and among the valid
+/// ones the one with the best ratio (see LoopSplitOptions) is taken. The cost is about n^2 for a
+/// loop of n <= 128 edges, and n log n for halving longer ones as long as planes separate them. The
+/// memory is kept from loop to loop; every thread needs a splitter of its own. Source: thesis 5.1.
 ///
 /// Differs: where a (sub-)loop has no such plane, which is common on jagged loops, any diagonal
-/// that stays inside the loop will do; loops of more than 128 edges are split near the middle, by
-/// the best of some planes instead of all. Cost: about n^2 for a loop of n <= 128 edges, n log n
-/// for the halving of long ones as long as planes separate them. Keeps its memory from loop to
-/// loop; not thread-safe, so one for each thread.
+/// that stays inside the loop will do. Loops of more than 128 edges are split near the middle, by
+/// the best of some planes instead of all.
 class LoopSplitter {
  public:
-  /// Whether vertices i and j of the loop must not be joined (they are an edge already).
+  /// Tells whether vertices i and j of the loop must not be joined: they are an edge already.
   using Joined = std::function<bool(std::int32_t, std::int32_t)>;
 
   explicit LoopSplitter(const LoopSplitOptions& options = {}) : options_(options) {}
 
-  /// The triangles of `loop` (>= 3 points), as indices into it and running along it; nothing if
-  /// some sub-loop has no valid split. Sub-loops are split along `normal`, against which the loop
-  /// runs anticlockwise; if that is zero, each along its own average normal (its vector area), or,
-  /// where that leads nowhere, all along that of the whole loop. Valid until the next call.
+  /// Returns the triangles of `loop` (>= 3 points), as indices into it and running along it;
+  /// nothing if some sub-loop has no valid split. Sub-loops are split along `normal`, about which
+  /// the loop runs anticlockwise. If that is zero, each is split along its own average normal (its
+  /// vector area), or, where that leads nowhere, all along that of the whole loop. The result is
+  /// valid until the next call.
   std::span<const Triangle> split(std::span<const Eigen::Vector3d> loop, const Joined& joined,
                                   const Eigen::Vector3d& normal = Eigen::Vector3d::Zero());
 
-  /// The same, each sub-loop along its own normal; those without a valid split go to `stuck` (of
-  /// indices into the loop) and the others are split on.
+  /// Splits each sub-loop along its own normal. Sub-loops without a valid split are put into
+  /// `stuck`, as indices into the loop, and the others are split on.
   std::span<const Triangle> split_as_far_as_possible(std::span<const Eigen::Vector3d> loop,
                                                      const Joined& joined,
                                                      std::vector<std::vector<std::int32_t>>& stuck);
@@ -75,10 +76,10 @@ class LoopSplitter {
   int before(int k) const { return k == 0 ? size() - 1 : k - 1; }
 
   LoopSplitOptions options_;
-  std::vector<std::int32_t> pending_;       ///< vertices of all sub-loops still to be split
-  std::vector<std::int32_t> sizes_;         ///< of those sub-loops
-  std::vector<std::int32_t> current_;       ///< the sub-loop in hand
-  std::vector<Eigen::Vector2d> projected_;  ///< its points in the plane
+  std::vector<std::int32_t> pending_;       ///< Vertices of all sub-loops still to be split.
+  std::vector<std::int32_t> sizes_;         ///< Number of vertices of each of those sub-loops.
+  std::vector<std::int32_t> current_;       ///< The sub-loop that is being split.
+  std::vector<Eigen::Vector2d> projected_;  ///< Its points, projected along its normal.
   std::vector<Triangle> triangles_;
 };
 

@@ -4,16 +4,16 @@
 
 namespace semigeo::kernels {
 
-/// What remeshing did to a surface.
+/// Counts what remeshing did to a surface.
 struct RemeshCounts {
-  std::int64_t flipped = 0;        ///< edges turned to the other diagonal of their two faces
-  std::int64_t split = 0;          ///< edges halved by a new vertex
-  std::int64_t collapsed = 0;      ///< edges whose ends became one vertex
-  std::int64_t torn = 0;           ///< necks, handles and strips cut
-  std::int64_t inserted = 0;       ///< vertices that are new: in halved edges, along cuts
-  std::int64_t removed = 0;        ///< vertices that are gone: collapsed, or dropped with a part
-  std::int64_t dropped_parts = 0;  ///< parts removed: collapsed, or too small to carry a patch
-  std::int64_t dropped_faces = 0;  ///< faces of those
+  std::int64_t flipped = 0;        ///< Edges turned to the other diagonal of their two faces.
+  std::int64_t split = 0;          ///< Edges halved by a new vertex.
+  std::int64_t collapsed = 0;      ///< Edges whose ends became one vertex.
+  std::int64_t torn = 0;           ///< Necks, handles and strips that were cut.
+  std::int64_t inserted = 0;       ///< New vertices: in halved edges, along cuts.
+  std::int64_t removed = 0;        ///< Lost vertices: collapsed, or dropped with a part.
+  std::int64_t dropped_parts = 0;  ///< Parts removed: shrunk, or too small for a patch.
+  std::int64_t dropped_faces = 0;  ///< Faces of those parts.
 
   bool operator==(const RemeshCounts&) const = default;
   RemeshCounts& operator+=(const RemeshCounts& other) {

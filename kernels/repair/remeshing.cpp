@@ -11,6 +11,7 @@
 #include "kernels/surface/circulators.hpp"
 #include "kernels/surface/quadratic_face.hpp"
 #include "kernels/surface/vertex_order.hpp"
+#include "kernels/surface/vertex_rows.hpp"
 
 namespace semigeo::kernels {
 namespace {
@@ -332,33 +333,24 @@ Eigen::Vector3f Remesher::middle(std::int32_t a, std::int32_t b) const {
   return m;
 }
 
-/// New vertices get all that old ones have.
+/// Gives vertices that the editor has made what the vertices have that they come from.
 void Remesher::carry_new_vertices() {
-  while (mesh_.vertex_count() < static_cast<std::int64_t>(mesh_.connectivity.outgoing.size())) {
+  while (mesh_.vertex_count() < mesh_.connectivity.vertex_count()) {
     const auto birth = editor_.births()[mesh_.vertex_count() - first_new_];
-    const std::int32_t a = birth.first;
-    const std::int32_t b = birth.second;
-    const bool copy = b == kNone;
-    Eigen::Vector4f point = mesh_.points[a];
-    Eigen::Vector3f normal = mesh_.normals[a];
-    Eigen::Vector3f initial_point = mesh_.initial_points[a];
-    if (!copy) {
-      initial_point = (initial_point + mesh_.initial_points[b]) / 2;
-      point.head<3>() = middle(a, b);
-      const Eigen::Vector3f sum = normal + mesh_.normals[b];
-      if (sum.norm() > 0) normal = sum.normalized();
-    }
-    mesh_.points.push_back(point);
-    mesh_.normals.push_back(normal);
-    mesh_.source.push_back(copy ? mesh_.source[a] : kNone);
-    mesh_.initial_points.push_back(initial_point);
-    mesh_.part.push_back(mesh_.part[a]);
-    if (!mesh_.vertex_filled.empty()) {
-      const std::uint8_t filled = mesh_.vertex_filled[a];
-      mesh_.vertex_filled.push_back(copy ? filled : filled & mesh_.vertex_filled[b]);
-    }
+    append_row_copy(mesh_.vertex_rows(), birth.first);
+    if (birth.second != kNone) put_between(birth.first, birth.second);
     ++counts_.inserted;
   }
+}
+
+/// Moves the last vertex, a copy of a, to the middle of a and b.
+void Remesher::put_between(std::int32_t a, std::int32_t b) {
+  mesh_.points.back().head<3>() = middle(a, b);
+  const Eigen::Vector3f sum = mesh_.normals[a] + mesh_.normals[b];
+  if (sum.norm() > 0) mesh_.normals.back() = sum.normalized();
+  mesh_.source.back() = kNone;
+  mesh_.initial_points.back() = (mesh_.initial_points[a] + mesh_.initial_points[b]) / 2;
+  if (!mesh_.vertex_filled.empty()) mesh_.vertex_filled.back() &= mesh_.vertex_filled[b];
 }
 
 void Remesher::mark_face(std::int32_t f, std::uint8_t filled) {
@@ -444,12 +436,7 @@ std::vector<std::int32_t> Remesher::order_of_survivors() {
 void Remesher::reorder(const std::vector<std::int32_t>& order) {
   std::vector<std::int32_t> faces;
   mesh_.connectivity = reordered(mesh_.connectivity, order, &faces);
-  mesh_.part = gathered(mesh_.part, order);
-  mesh_.points = gathered(mesh_.points, order);
-  mesh_.normals = gathered(mesh_.normals, order);
-  mesh_.source = gathered(mesh_.source, order);
-  mesh_.initial_points = gathered(mesh_.initial_points, order);
-  mesh_.vertex_filled = gathered(mesh_.vertex_filled, order);
+  gather_rows(mesh_.vertex_rows(), order);
   mesh_.face_filled = gathered(mesh_.face_filled, faces);
 }
 

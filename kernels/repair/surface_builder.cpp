@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "kernels/surface/bounding_box.hpp"
+#include "kernels/surface/circulators.hpp"
 #include "kernels/surface/edge_groups.hpp"
 
 namespace semigeo::kernels {
@@ -13,14 +15,9 @@ namespace {
 /// Zero, or the middle of the bounding box rounded to a power of ten below its size.
 Eigen::Vector3d choose_origin(const std::vector<Eigen::Vector3d>& points) {
   if (points.empty()) return Eigen::Vector3d::Zero();
-  Eigen::Vector3d low = points.front();
-  Eigen::Vector3d high = low;
-  for (const auto& p : points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const double diagonal = (high - low).norm();
-  const Eigen::Vector3d middle = 0.5 * low + 0.5 * high;
+  const Eigen::AlignedBox3d box = bounding_box(points);
+  const double diagonal = box.sizes().norm();
+  const Eigen::Vector3d middle = 0.5 * box.min() + 0.5 * box.max();
   if (!(diagonal > 0) || middle.norm() <= diagonal) return Eigen::Vector3d::Zero();
   const double unit = std::pow(10.0, std::floor(std::log10(diagonal)));
   return (middle / unit).array().round() * unit;
@@ -198,13 +195,9 @@ std::int64_t split_fans(Surface& surface) {
         seen[h] = true;
         surface.triangles[face_of(h)][corner_of(h)] = vertex;
       };
-      std::int32_t h = start;
-      do {
-        claim(h);
-        h = surface.ccw(h);
-      } while (h != kNone && h != start);
-      if (h == start) continue;
-      for (h = surface.twin[start]; h != kNone; h = surface.twin[h]) {
+      for (const std::int32_t h : OutgoingRange(surface, start)) claim(h);
+      for (std::int32_t h = surface.twin[start]; h != kNone && !seen[next(h)];
+           h = surface.twin[h]) {
         h = next(h);
         claim(h);
       }

@@ -6,6 +6,7 @@
 
 #include "kernels/surface/circulators.hpp"
 #include "kernels/surface/vertex_order.hpp"
+#include "kernels/surface/vertex_rows.hpp"
 
 namespace semigeo::kernels {
 namespace {

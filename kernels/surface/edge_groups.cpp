@@ -1,13 +1,11 @@
 #include "kernels/surface/edge_groups.hpp"
 
 #include <algorithm>
-
-#include "kernels/surface/surface.hpp"
+#include <utility>
 
 namespace semigeo::kernels {
 
-EdgeGroups group_edges(std::span<const std::array<std::int32_t, 3>> triangles,
-                       std::int64_t vertex_count) {
+EdgeGroups group_edges(std::span<const Triangle> triangles, std::int64_t vertex_count) {
   const auto low = [&](std::int32_t h) {
     const auto& t = triangles[face_of(h)];
     return std::min(t[corner_of(h)], t[corner_of(next(h))]);

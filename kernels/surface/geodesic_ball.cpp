@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/surface/circulators.hpp"
+
 namespace semigeo::kernels {
 namespace {
 
-/// Distance of the corner at (x, y), y > 0, from a source below the base (0, 0) - (length, 0) that
-/// lies so far from its ends; from over an end if the straight line misses the base.
+/// Returns the distance of the corner at (x, y), y > 0, from a source below the base (0, 0) -
+/// (length, 0) that lies `from_first` and `from_second` from its ends. Where the straight line
+/// misses the base, the way leads over one of its ends.
 double across_face(double from_first, double from_second, double length, double x, double y) {
   const auto norm = [](double a, double b) { return std::sqrt(a * a + b * b); };
   const double around = std::min(from_first + norm(x, y), from_second + norm(x - length, y));
@@ -54,20 +57,20 @@ void GeodesicBall::enlarge() {
 
 void GeodesicBall::offer(std::int32_t vertex, double distance) {
   Known& entry = known(vertex);
-  if (entry.settled || !(distance < entry.distance)) return;
+  if (entry.visited || !(distance < entry.distance)) return;
   entry.distance = distance;
   heap_.push_back({distance, vertex});
   std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
 }
 
-bool GeodesicBall::settle_next(std::int32_t& vertex, double& distance) {
+bool GeodesicBall::visit_nearest(std::int32_t& vertex, double& distance) {
   while (!heap_.empty()) {
     std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
     const Front front = heap_.back();
     heap_.pop_back();
     Known& entry = known(front.vertex);
-    if (entry.settled || entry.distance != front.distance) continue;
-    entry.settled = true;
+    if (entry.visited || entry.distance != front.distance) continue;
+    entry.visited = true;
     vertex = front.vertex;
     distance = front.distance;
     return true;
@@ -75,38 +78,30 @@ bool GeodesicBall::settle_next(std::int32_t& vertex, double& distance) {
   return false;
 }
 
-void GeodesicBall::look_round(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
-                              std::int32_t vertex) {
+void GeodesicBall::collect_ring(const Connectivity& surface,
+                                std::span<const Eigen::Vector4f> points, std::int32_t vertex) {
   ring_.clear();
   const Eigen::Vector3d p = points[vertex].head<3>().cast<double>();
-  const auto look = [&](std::int32_t w) {
+  for (const std::int32_t w : neighbours(surface, vertex)) {
     const Eigen::Vector3d spoke = points[w].head<3>().cast<double>() - p;
     const Known& entry = known(w);
-    ring_.push_back({w, entry.settled, entry.distance, spoke.norm(), spoke});
-  };
-  const std::int32_t start = surface.outgoing[vertex];
-  std::int32_t h = start;
-  do {
-    look(surface.target(h));
-    const std::int32_t last = prev(h);
-    h = surface.ccw(h);
-    if (h == kNone) look(surface.origin(last));
-  } while (h != kNone && h != start);
-  ring_closed_ = h == start;
+    ring_.push_back({w, entry.visited, entry.distance, spoke.norm(), spoke});
+  }
+  ring_closed_ = !surface.on_boundary(vertex);
 }
 
-void GeodesicBall::spread(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
+void GeodesicBall::expand(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
                           std::int32_t vertex, bool is_centre, double radius) {
   const double here = known(vertex).distance;
-  look_round(surface, points, vertex);
+  collect_ring(surface, points, vertex);
   const auto reach = [&](const Neighbour& to, double distance) {
-    if (!to.settled && (is_centre || distance <= radius)) offer(to.vertex, distance);
+    if (!to.visited && (is_centre || distance <= radius)) offer(to.vertex, distance);
   };
   for (const Neighbour& to : ring_) reach(to, here + to.length);
   if (is_centre) return;
-  // Over each face, from the base between this vertex and a settled one to the third corner.
+  // Over each face, from the base between this vertex and a visited one to the third corner.
   const auto cross = [&](const Neighbour& base, const Neighbour& to) {
-    if (!base.settled || to.settled || !(base.length > 0)) return;
+    if (!base.visited || to.visited || !(base.length > 0)) return;
     const double x = to.spoke.dot(base.spoke) / base.length;
     const double y = std::sqrt(std::max(0.0, to.length * to.length - x * x));
     reach(to, across_face(here, base.distance, base.length, x, y));

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "kernels/surface/bounding_box.hpp"
 #include "kernels/surface/z_order.hpp"
 
 namespace semigeo::kernels {
@@ -28,13 +29,8 @@ Eigen::Vector3d nearest_on_segment(const Eigen::Vector3d& p, const Eigen::Vector
 std::vector<std::int32_t> z_order(const Surface& surface) {
   const auto faces = static_cast<std::int32_t>(surface.face_count());
   if (faces == 0) return {};
-  Eigen::Array3f low = surface.points[0].array();
-  Eigen::Array3f high = low;
-  for (const auto& p : surface.points) {
-    low = low.min(p.array());
-    high = high.max(p.array());
-  }
-  const double size = (high - low).maxCoeff();
+  const Eigen::AlignedBox3f box = bounding_box(surface.points);
+  const double size = box.sizes().maxCoeff();
   const double scale = size > 0 ? ((1 << kBits) - 1) / size : 0.0;
   std::vector<std::pair<std::uint64_t, std::int32_t>> keys(faces);
   for (std::int32_t f = 0; f < faces; ++f) {
@@ -44,7 +40,7 @@ std::vector<std::int32_t> z_order(const Surface& surface) {
       const double middle = (static_cast<double>(surface.points[t[0]][c]) +
                              surface.points[t[1]][c] + surface.points[t[2]][c]) /
                             3;
-      key |= spread_bits(static_cast<std::uint64_t>((middle - low[c]) * scale)) << c;
+      key |= spread_bits(static_cast<std::uint64_t>((middle - box.min()[c]) * scale)) << c;
     }
     keys[f] = {key, f};
   }
@@ -52,6 +48,14 @@ std::vector<std::int32_t> z_order(const Surface& surface) {
   std::vector<std::int32_t> order(faces);
   for (std::int32_t f = 0; f < faces; ++f) order[f] = keys[f].second;
   return order;
+}
+
+/// Returns the squared distance of a point from a box, 0 inside, in double precision.
+double squared_distance(const Eigen::AlignedBox3f& box, const Eigen::Vector3d& p) {
+  return (box.min().cast<double>() - p)
+      .cwiseMax(p - box.max().cast<double>())
+      .cwiseMax(0.0)
+      .squaredNorm();
 }
 
 }  // namespace
@@ -74,27 +78,14 @@ Eigen::Vector3d nearest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vecto
   return best;
 }
 
-double NearestSurface::Box::squared_distance(const Eigen::Vector3d& p) const {
-  return (low.cast<double>() - p).cwiseMax(p - high.cast<double>()).cwiseMax(0.0).squaredNorm();
-}
-
 NearestSurface::NearestSurface(const Surface& surface)
     : surface_(surface), faces_(z_order(surface)) {
   leaf_count_ = std::bit_ceil((faces_.size() + kLeaf - 1) / kLeaf);
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  const Box empty{Eigen::Vector3f::Constant(kInfinity), Eigen::Vector3f::Constant(-kInfinity)};
-  boxes_.assign(2 * leaf_count_, empty);
-  for (std::size_t k = 0; k < faces_.size(); ++k) {
-    Box& box = boxes_[leaf_count_ + k / kLeaf];
-    for (const std::int32_t v : surface.triangles[faces_[k]]) {
-      box.low = box.low.cwiseMin(surface.points[v]);
-      box.high = box.high.cwiseMax(surface.points[v]);
-    }
-  }
-  for (std::size_t k = leaf_count_; k-- > 1;) {
-    boxes_[k].low = boxes_[2 * k].low.cwiseMin(boxes_[2 * k + 1].low);
-    boxes_[k].high = boxes_[2 * k].high.cwiseMax(boxes_[2 * k + 1].high);
-  }
+  boxes_.resize(2 * leaf_count_);
+  for (std::size_t k = 0; k < faces_.size(); ++k)
+    for (const std::int32_t v : surface.triangles[faces_[k]])
+      boxes_[leaf_count_ + k / kLeaf].extend(surface.points[v]);
+  for (std::size_t k = leaf_count_; k-- > 1;) boxes_[k] = boxes_[2 * k].merged(boxes_[2 * k + 1]);
 }
 
 void NearestSurface::search_leaf(std::size_t leaf, const Eigen::Vector3d& p,
@@ -122,7 +113,7 @@ NearestPoint NearestSurface::nearest(const Eigen::Vector3d& p, double limit) con
   // Depth first, the nearer child first: at most one box a level waits.
   std::array<Pending, 64> pending;
   int count = 0;
-  pending[count++] = {1, boxes_[1].squared_distance(p)};
+  pending[count++] = {1, squared_distance(boxes_[1], p)};
   while (count > 0) {
     const Pending next = pending[--count];
     const double reach2 = best.distance * best.distance;
@@ -132,8 +123,8 @@ NearestPoint NearestSurface::nearest(const Eigen::Vector3d& p, double limit) con
       search_leaf(next.box - leaf_count_, p, best);
       continue;
     }
-    Pending near{2 * next.box, boxes_[2 * next.box].squared_distance(p)};
-    Pending far{2 * next.box + 1, boxes_[2 * next.box + 1].squared_distance(p)};
+    Pending near{2 * next.box, squared_distance(boxes_[2 * next.box], p)};
+    Pending far{2 * next.box + 1, squared_distance(boxes_[2 * next.box + 1], p)};
     if (far.squared_distance < near.squared_distance) std::swap(near, far);
     pending[count++] = far;
     pending[count++] = near;

@@ -8,8 +8,8 @@
 
 namespace semigeo::kernels {
 
-/// Sorts by the bits [first, last) of the keys, ascending; equal ones stay in their order. Cost:
-/// two passes over the keys for each 11 bits, and as much memory again as the keys.
+/// Sorts keys by their bits [first, last), ascending. Keys that are equal there keep their order.
+/// The cost is two passes over the keys for each 11 bits, and as much memory again as the keys.
 inline void radix_sort(std::vector<std::uint64_t>& keys, int first, int last) {
   constexpr int kDigit = 11;
   constexpr std::uint64_t kMask = (1U << kDigit) - 1;

@@ -7,10 +7,11 @@
 
 namespace semigeo::kernels {
 
-/// Triangles as a file lists them: indexed, with no promise about topology (a soup is fine).
+/// Holds triangles as a file lists them: indexed, with no promise about topology. A list of
+/// triangles that share no vertices is valid, too.
 struct TriangleMesh {
-  std::vector<Eigen::Vector3d> points;                 ///< (N, 3), in the scan's length unit
-  std::vector<std::array<std::int32_t, 3>> triangles;  ///< (F, 3), indices into points
+  std::vector<Eigen::Vector3d> points;  ///< (N, 3) Points, in the scan's length unit.
+  std::vector<std::array<std::int32_t, 3>> triangles;  ///< (F, 3) Indices into the points.
 };
 
 }  // namespace semigeo::kernels

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "kernels/surface/bounding_box.hpp"
+#include "kernels/surface/vertex_rows.hpp"
 #include "kernels/surface/z_order.hpp"
 
 namespace semigeo::kernels {
@@ -43,13 +45,8 @@ Connectivity renumbered(const Connectivity& mesh, const std::vector<std::int32_t
 
 std::vector<std::int32_t> locality_order(const Surface& surface) {
   if (surface.points.empty()) return {};
-  Eigen::Vector3f low = surface.points.front();
-  Eigen::Vector3f high = low;
-  for (const auto& p : surface.points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const double extent = (high - low).cast<double>().maxCoeff();
+  const Eigen::AlignedBox3f box = bounding_box(surface.points);
+  const double extent = box.sizes().cast<double>().maxCoeff();
   const double cells = extent > 0 ? ((1 << 21) - 1) / extent : 0;
 
   struct Key {
@@ -59,7 +56,7 @@ std::vector<std::int32_t> locality_order(const Surface& surface) {
   };
   std::vector<Key> keys(surface.points.size());
   for (std::size_t v = 0; v < keys.size(); ++v) {
-    const Eigen::Vector3d q = (surface.points[v] - low).cast<double>() * cells;
+    const Eigen::Vector3d q = (surface.points[v] - box.min()).cast<double>() * cells;
     const std::uint64_t code = spread_bits(static_cast<std::uint64_t>(q.x())) |
                                spread_bits(static_cast<std::uint64_t>(q.y())) << 1 |
                                spread_bits(static_cast<std::uint64_t>(q.z())) << 2;

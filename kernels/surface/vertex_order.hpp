@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -27,15 +26,5 @@ Connectivity compacted(const Connectivity& mesh, std::vector<std::int32_t>& sour
 /// one of `locality_order`; then every part is also one range of faces.
 Surface reordered(const Surface& surface, const std::vector<std::int32_t>& order,
                   std::vector<std::int32_t>* face_order = nullptr);
-
-/// What vertices or faces carry, in their new order: result[i] = values[order[i]]. Nothing stays
-/// nothing.
-template <typename Value>
-std::vector<Value> gathered(const std::vector<Value>& values,
-                            const std::vector<std::int32_t>& order) {
-  std::vector<Value> result(values.empty() ? 0 : order.size());
-  for (std::size_t i = 0; i < result.size(); ++i) result[i] = values[order[i]];
-  return result;
-}
 
 }  // namespace semigeo::kernels

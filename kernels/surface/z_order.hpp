@@ -4,8 +4,8 @@
 
 namespace semigeo::kernels {
 
-/// Spreads the low 21 bits of x so that two zero bits follow each: one coordinate's share of a
-/// Z-order (Morton) code in three dimensions.
+/// Returns the low 21 bits of x with two zero bits after each: the share of one coordinate in a
+/// Z-order (Morton) code of three dimensions.
 constexpr std::uint64_t spread_bits(std::uint64_t x) {
   x &= 0x1fffff;
   x = (x | x << 32) & 0x1f00000000ffffu;

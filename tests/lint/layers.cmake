@@ -32,7 +32,7 @@ foreach(layer engine kernels io jobs)
         math(EXPR violations "${violations} + 1")
       endif()
       # Libraries: each belongs to one layer.
-      foreach(rule "tbb/:engine" "OpenMesh/:kernels" "nanoflann:kernels" "hdf5.h:io" "zlib.h:io"
+      foreach(rule "tbb/:engine" "OpenMesh/:tests" "nanoflann:kernels" "hdf5.h:io" "zlib.h:io"
                    "libdeflate.h:io" "xxhash.h:io" "CLI/:jobs")
         string(REPLACE ":" ";" rule "${rule}")
         list(GET rule 0 library)

@@ -21,7 +21,7 @@ inline kernels::OrientedFeatures random_features(int count, std::uint64_t seed) 
     feature.scale_free_gaussian = uniform(random);
     feature.scale_free_mean = uniform(random);
     feature.code = kernels::feature_code(
-        i % 2 == 0 ? kernels::FeatureKind::gaussian : kernels::FeatureKind::mean,
+        i % 2 == 0 ? kernels::FeatureKind::kGaussian : kernels::FeatureKind::kMean,
         uniform(random) > 0);
     result.features.push_back(feature);
   }

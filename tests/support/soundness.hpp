@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "kernels/surface/connectivity.hpp"
+#include "kernels/surface/circulators.hpp"
 
 namespace semigeo::tests {
 
@@ -42,12 +42,10 @@ inline std::string fault_of(const kernels::Connectivity& s) {
     }
     if (s.triangles[face_of(start)][0] == kNone) return vertex + " leads into a gap";
     int met = 0;
-    std::int32_t h = start;
-    do {
+    for (const std::int32_t h : outgoing(s, static_cast<std::int32_t>(v))) {
       if (s.origin(h) != static_cast<std::int32_t>(v)) return vertex + " is left from elsewhere";
       if (++met > corners[v]) break;
-      h = s.ccw(h);
-    } while (h != kNone && h != start);
+    }
     if (met != corners[v]) return vertex + " has more than one fan, or starts it in the middle";
   }
   return "";
@@ -57,11 +55,8 @@ inline std::string fault_of(const kernels::Connectivity& s) {
 inline std::int64_t euler_characteristic(const kernels::Connectivity& s) {
   std::int64_t sum = 0;
   for (const std::int32_t h : s.outgoing) sum += h != kernels::kNone;
-  for (std::int32_t f = 0; f < s.face_count(); ++f) {
-    if (s.triangles[f][0] == kernels::kNone) continue;
-    ++sum;
-    for (int i = 0; i < 3; ++i) sum -= s.twin[kernels::halfedge(f, i)] < kernels::halfedge(f, i);
-  }
+  for (const auto& t : s.triangles) sum += t[0] != kernels::kNone;
+  for ([[maybe_unused]] const std::int32_t h : kernels::edges(s)) --sum;
   return sum;
 }
 

@@ -290,8 +290,8 @@ TEST(Dataset, AsksForWhatExists) {
   EXPECT_THROW(dataset.read_integers(0, "points"), Error);
   EXPECT_THROW(dataset.read_features(3), Error);
   EXPECT_THROW(dataset.scale(3), Error);
-  EXPECT_THROW(dataset.read_contours(3, kernels::FeatureKind::mean), Error);
-  EXPECT_THROW(dataset.read_contours(0, kernels::FeatureKind::mean_torsion), std::invalid_argument);
+  EXPECT_THROW(dataset.read_contours(3, kernels::FeatureKind::kMean), Error);
+  EXPECT_THROW(dataset.read_contours(0, kernels::FeatureKind::kMeanTorsion), std::invalid_argument);
 }
 
 TEST(DatasetWriter, UnfinishedLeavesNothing) {

@@ -40,8 +40,8 @@ class FeatureWriter : public ::testing::Test {
                                    .scale_free_gaussian = 1e-20F,
                                    .scale_free_mean = 16777216}};
   std::vector<Feature> torsion_ = {{.vertex = 2}, {.vertex = 3}};
-  std::vector<FeaturesView> tables_ = {{FeatureKind::mean, maxima_},
-                                       {FeatureKind::mean_torsion, torsion_}};
+  std::vector<FeaturesView> tables_ = {{FeatureKind::kMean, maxima_},
+                                       {FeatureKind::kMeanTorsion, torsion_}};
   // Open, closed, closed of two points, a single point.
   SampledContours contours_ = {.points = {{0, 0, 0},
                                           {1, 0, 0},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "jobs/stages/level_features.hpp"
 #include "kernels/repair/surface_builder.hpp"
 #include "kernels/surface/vertex_order.hpp"
+#include "kernels/surface/vertex_rows.hpp"
 
 namespace semigeo::jobs {
 
@@ -40,15 +42,11 @@ inline EvolvedMesh evolve_mesh(kernels::TriangleMesh mesh, int smoothings,
     result.features.push_back(find_features(evolving, fields, feature_options, context));
     if (k < smoothings) evolving.move();
     const std::vector<std::int32_t>& rows = *fields.stored_order;
-    fields.points = kernels::gathered(fields.points, rows);
-    fields.normals = kernels::gathered(fields.normals, rows);
-    fields.gaussian_curvature = kernels::gathered(fields.gaussian_curvature, rows);
-    fields.mean_curvature = kernels::gathered(fields.mean_curvature, rows);
-    fields.patch_completeness = kernels::gathered(fields.patch_completeness, rows);
-    fields.principal_curvature_1 = kernels::gathered(fields.principal_curvature_1, rows);
-    fields.principal_curvature_2 = kernels::gathered(fields.principal_curvature_2, rows);
-    fields.principal_direction_1 = kernels::gathered(fields.principal_direction_1, rows);
-    fields.principal_direction_2 = kernels::gathered(fields.principal_direction_2, rows);
+    kernels::gather_rows(std::tie(fields.points, fields.normals, fields.gaussian_curvature,
+                                  fields.mean_curvature, fields.patch_completeness,
+                                  fields.principal_curvature_1, fields.principal_curvature_2,
+                                  fields.principal_direction_1, fields.principal_direction_2),
+                         rows);
     result.levels.push_back(std::move(fields));
   }
   return result;

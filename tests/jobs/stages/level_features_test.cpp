@@ -26,8 +26,8 @@ using kernels::SampledContours;
 using kernels::TriangleMesh;
 using std::numbers::pi;
 
-constexpr int kGaussian = static_cast<int>(FeatureKind::gaussian);
-constexpr int kMean = static_cast<int>(FeatureKind::mean);
+constexpr int kGaussian = static_cast<int>(FeatureKind::kGaussian);
+constexpr int kMean = static_cast<int>(FeatureKind::kMean);
 
 std::vector<Vector3f> points_of(const SampledContours& contours, std::int64_t contour) {
   return {contours.points.begin() + contours.offsets[contour],

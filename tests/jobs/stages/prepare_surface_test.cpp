@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kernels/repair/surface_builder.hpp"
+#include "kernels/surface/circulators.hpp"
 #include "tests/support/shapes.hpp"
 
 namespace semigeo::jobs {
@@ -31,8 +32,7 @@ TriangleMesh holed_sphere(int levels) {
 
 std::int64_t boundary_edges(const kernels::Surface& surface) {
   std::int64_t count = 0;
-  for (std::int32_t f = 0; f < surface.face_count(); ++f)
-    for (int i = 0; i < 3; ++i) count += surface.twin[kernels::halfedge(f, i)] == kernels::kNone;
+  for (const std::int32_t h : kernels::edges(surface)) count += surface.twin[h] == kernels::kNone;
   return count;
 }
 

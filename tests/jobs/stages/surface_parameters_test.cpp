@@ -43,7 +43,7 @@ TEST(SurfaceParametersTest, EachOfThemShows) {
     if (field == 2) changed.evolution.step_factor = std::nextafter(1.0, 2.0);
     if (field == 3) changed.compression = io::Compression::kNone;
     if (field == 4) changed.length_unit = "mm";
-    if (field == 5) changed.evolution.coordinates = kernels::Coordinates::polar;
+    if (field == 5) changed.evolution.coordinates = kernels::Coordinates::kPolar;
     if (field == 6) changed.evolution.schedule = Schedule::kOctaves;
     if (field >= 8) changed.preparation.decimate = 1;
     if (field == 9) changed.preparation.decimate_in_length_units = true;

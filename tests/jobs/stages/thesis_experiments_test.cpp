@@ -42,7 +42,7 @@ double roundness(const EvolvedMesh& evolved, std::size_t level) {
 TEST(ThesisExperimentsTest, ACubeBecomesASphereInBothCoordinates_Figure6_1) {
   const EvolvedMesh a = evolve_mesh(shapes::cube(2, 4), 5);
   const EvolvedMesh b =
-      evolve_mesh(shapes::cube(2, 4), 5, {.coordinates = kernels::Coordinates::polar});
+      evolve_mesh(shapes::cube(2, 4), 5, {.coordinates = kernels::Coordinates::kPolar});
   ASSERT_EQ(a.levels[0].points.size(), 98u);
   EXPECT_GT(roundness(a, 0), 1.7);
   EXPECT_LT(roundness(a, 5), 1.04);

@@ -112,7 +112,7 @@ TEST_F(ThesisRecognitionTest, TheTotalIsTheMeanOfTheKinds) {
 TEST_F(ThesisRecognitionTest, KindsDoNotMixAndOtherLevelsDoNotCount) {
   RecognitionModel scene = random_model(1);
   std::erase_if(scene.features.features, [](const OrientedFeature& feature) {
-    return feature.level == 1 && feature.code / 2 != static_cast<int>(FeatureKind::mean);
+    return feature.level == 1 && feature.code / 2 != static_cast<int>(FeatureKind::kMean);
   });
   const auto found = scores(scene);
   for (const ThesisScore& score : found) {

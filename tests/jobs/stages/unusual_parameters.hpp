@@ -12,7 +12,7 @@ inline SurfaceParameters unusual_parameters() {
                           .decimate_in_length_units = true,
                           .target_vertices = 1993},
           .evolution = {.curved = false,
-                        .coordinates = kernels::Coordinates::polar,
+                        .coordinates = kernels::Coordinates::kPolar,
                         .schedule = Schedule::kOctaves,
                         .rescale = Rescale::kEdges,
                         .remesh = false,

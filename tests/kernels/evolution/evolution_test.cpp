@@ -35,7 +35,7 @@ double median(std::vector<double> values) {
 MedianErrors level_zero_errors(TriangleMesh mesh,
                                const std::function<Truth(const Vector3f&)>& truth,
                                bool curved = true, double size = 0,
-                               Coordinates coordinates = Coordinates::semigeodesic) {
+                               Coordinates coordinates = Coordinates::kSemigeodesic) {
   PreparedSurface s(std::move(mesh), curved);
   const auto step = static_cast<float>(mean_edge_length(s.surface));
   if (curved) s.sharpen_normals(step);
@@ -144,18 +144,18 @@ TEST(EvolutionTest, FlatFacesGiveTheFiguresOfTheThesis_Figure6_19) {
 
 TEST(EvolutionTest, PolarPatchesAreAsAccurate) {
   const MedianErrors sphere =
-      level_zero_errors(shapes::icosphere(5), unit_sphere, true, 0, Coordinates::polar);
+      level_zero_errors(shapes::icosphere(5), unit_sphere, true, 0, Coordinates::kPolar);
   EXPECT_LT(sphere.gaussian, 1e-4);
   EXPECT_LT(sphere.mean, 5e-5);
   const MedianErrors torus = level_zero_errors(shapes::torus(1, 0.4, 312, 126, 0.3), test_torus,
-                                               true, 0, Coordinates::polar);
+                                               true, 0, Coordinates::kPolar);
   EXPECT_LT(torus.gaussian, 8e-4);
   EXPECT_LT(torus.mean, 8e-5);
 }
 
 // On a torus the tube's circles are the directions of k2 = -1 / r, the rings those of k1.
 TEST(EvolutionTest, PrincipalDirectionsOfATorus) {
-  for (const Coordinates coordinates : {Coordinates::semigeodesic, Coordinates::polar}) {
+  for (const Coordinates coordinates : {Coordinates::kSemigeodesic, Coordinates::kPolar}) {
     PreparedSurface s(shapes::torus(1, 0.4, 156, 63, 0.3));
     const auto step = static_cast<float>(mean_edge_length(s.surface));
     s.sharpen_normals(step);

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "kernels/features/torsion.hpp"
+#include "kernels/surface/circulators.hpp"
 #include "tests/support/prepared_surface.hpp"
 #include "tests/support/shapes.hpp"
 
@@ -135,11 +136,8 @@ TEST(ZeroCrossingsTest, ManyContoursComeOnceEach) {
   // Every crossed edge of the closed surface is in exactly one contour.
   std::size_t crossed = 0;
   const Surface& s = t.prepared.surface;
-  for (std::int32_t f = 0; f < s.face_count(); ++f)
-    for (int i = 0; i < 3; ++i) {
-      const std::int32_t h = halfedge(f, i);
-      crossed += s.twin[h] < h && (t.values[s.origin(h)] >= 0) != (t.values[s.target(h)] >= 0);
-    }
+  for (const std::int32_t h : edges(s))
+    crossed += (t.values[s.origin(h)] >= 0) != (t.values[s.target(h)] >= 0);
   EXPECT_EQ(t.contours.points.size(), crossed);
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "kernels/surface/circulators.hpp"
 #include "tests/support/prepared_surface.hpp"
 #include "tests/support/shapes.hpp"
 
@@ -21,7 +22,7 @@ TEST(PatchTest, PlaneGivesTheCartesianGrid_Figure5_10) {
   const PreparedSurface s(std::move(mesh));
   const GeodesicMesh m = s.mesh();
   const std::int32_t v = s.nearest({0, 0, 0});
-  for (std::int32_t first = m.outgoing[v];;) {
+  for (const std::int32_t first : outgoing(s.surface, v)) {
     Patch patch;
     trace_patch(s.sampled(), v, first, 0.8f, patch);
     ASSERT_TRUE(patch.whole());
@@ -33,8 +34,6 @@ TEST(PatchTest, PlaneGivesTheCartesianGrid_Figure5_10) {
         const Vector3f expected = 0.8f * (i * u + j * w);
         EXPECT_LT((patch.sample[i + kReach][j + kReach].head<3>() - expected).norm(), 1e-3f);
       }
-    first = m.twin(prev(first));
-    if (first == m.outgoing[v]) break;
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kernels/surface/circulators.hpp"
 #include "tests/support/prepared_surface.hpp"
 #include "tests/support/shapes.hpp"
 
@@ -35,7 +36,7 @@ TEST(PolarPatchTest, PlaneGivesThePolarGrid) {
   const PreparedSurface s(std::move(mesh));
   const GeodesicMesh m = s.mesh();
   const std::int32_t v = s.nearest({0, 0, 0});
-  for (std::int32_t first = m.outgoing[v];;) {
+  for (const std::int32_t first : outgoing(s.surface, v)) {
     PolarPatch patch;
     trace_polar_patch(s.sampled(), v, first, 0.8f, patch);
     ASSERT_TRUE(patch.whole());
@@ -47,8 +48,6 @@ TEST(PolarPatchTest, PlaneGivesThePolarGrid) {
       for (int k = 1; k <= kReach; ++k)
         EXPECT_LT((patch.sample[j][k - 1].head<3>() - 0.8f * k * along).norm(), 1e-3f);
     }
-    first = m.twin(prev(first));
-    if (first == m.outgoing[v]) break;
   }
 }
 

@@ -151,7 +151,7 @@ TEST(Overlap, OneOfTheTurnsPutsACupRight) {
   const double diagonal = 3;
   Similarity wrong;
   wrong.rotation = Eigen::AngleAxisd(2.0, Vector3d::UnitZ()).toRotationMatrix();
-  const auto turns = turned(model, diagonal, wrong, tree, {}, 2000);
+  const auto turns = symmetric_poses(model, diagonal, wrong, tree, {}, 2000);
   EXPECT_EQ(turns.size(), 3U + 35U);
   double least = std::numbers::pi;
   for (const Similarity& pose : turns) {
@@ -164,7 +164,7 @@ TEST(Overlap, OneOfTheTurnsPutsACupRight) {
 TEST(Overlap, WhatCannotSlipIsTurnedByHalfTurnsOnly) {
   const Body body;
   const SurfaceSamples model = body.samples(1000);
-  const auto turns = turned(model, body.diagonal, {}, SampleTree(model), {}, 1000);
+  const auto turns = symmetric_poses(model, body.diagonal, {}, SampleTree(model), {}, 1000);
   ASSERT_EQ(turns.size(), 3U);
   Similarity all;
   for (const Similarity& pose : turns) {
@@ -174,7 +174,7 @@ TEST(Overlap, WhatCannotSlipIsTurnedByHalfTurnsOnly) {
   }
   EXPECT_LT(rotation_between(all.rotation, Eigen::Matrix3d::Identity()), 1e-6);
   EXPECT_LT(all.translation.norm(), 1e-6);  // about one point
-  EXPECT_TRUE(turned({}, 1, {}, SampleTree(model), {}, 100).empty());
+  EXPECT_TRUE(symmetric_poses({}, 1, {}, SampleTree(model), {}, 100).empty());
 }
 
 TEST(Overlap, AHalfMatchesHalfWithoutMuchConflict) {
@@ -187,7 +187,7 @@ TEST(Overlap, AHalfMatchesHalfWithoutMuchConflict) {
   EXPECT_NEAR(half.match, static_cast<double>(there) / 1000, 0.06);  // and a spacing more
   EXPECT_LT(half.conflict, 0.06);                                    // a band beside the cut
   // And all of the half is explained.
-  const auto marks = explained(SampleTree(model), body.diagonal, {}, scene, {}, 2000);
+  const auto marks = samples_on_model(SampleTree(model), body.diagonal, {}, scene, {}, 2000);
   EXPECT_GT(std::ranges::count(marks, 1), 1980);
 }
 
@@ -228,7 +228,7 @@ TEST(Overlap, WhatIsUsedIsNeutral) {
   const Overlap rest = overlap(model, body.diagonal, {}, tree, {}, 1000, used);
   EXPECT_NEAR(rest.match, 0.5, 0.05);
   EXPECT_LT(rest.conflict, 0.01);
-  const auto marks = explained(tree, body.diagonal, {}, model, {}, 1000, used);
+  const auto marks = samples_on_model(tree, body.diagonal, {}, model, {}, 1000, used);
   for (std::size_t i = 0; i < used.size(); ++i) EXPECT_NE(marks[i], used[i]);
 }
 
@@ -241,8 +241,8 @@ TEST(Overlap, RefinementFindsTheTruePose) {
       const Similarity truth = random_similarity(random);
       const Body seen = half ? body.half().moved(truth) : body.moved(truth);
       const SurfaceSamples scene = seen.samples(3000);
-      const Similarity found = refined(model, body.diagonal, shaken(truth, body.diagonal, random),
-                                       SampleTree(scene), {});
+      const Similarity found = refine_pose(
+          model, body.diagonal, shaken(truth, body.diagonal, random), SampleTree(scene), {});
       EXPECT_LT(rotation_between(found.rotation, truth.rotation), half ? 0.01 : 0.004);
       EXPECT_NEAR(found.scale / truth.scale, 1, half ? 0.01 : 0.004);
       EXPECT_LT((found.translation - truth.translation).norm(),
@@ -261,7 +261,7 @@ TEST(Overlap, RefinementLeavesWhatTheSceneDoesNotFix) {
   const SurfaceSamples samples = sheet.samples(1000);
   Similarity start;
   start.translation = {0.05, 0.02, 0.03};
-  const Similarity found = refined(samples, std::sqrt(2), start, SampleTree(samples), {});
+  const Similarity found = refine_pose(samples, std::sqrt(2), start, SampleTree(samples), {});
   EXPECT_NEAR(found.translation.z(), 0, 1e-3);
   EXPECT_NEAR(found.translation.x(), 0.05, 1e-3);
   EXPECT_NEAR(found.translation.y(), 0.02, 1e-3);
@@ -274,7 +274,7 @@ TEST(Overlap, NothingNearNothingMoved) {
   const SurfaceSamples samples = body.samples(300);
   Similarity away;
   away.translation = {0, 0, 50};
-  const Similarity found = refined(samples, body.diagonal, away, SampleTree(samples), {});
+  const Similarity found = refine_pose(samples, body.diagonal, away, SampleTree(samples), {});
   EXPECT_EQ(found.translation, away.translation);
   EXPECT_EQ(found.scale, away.scale);
 }

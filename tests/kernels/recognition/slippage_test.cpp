@@ -88,7 +88,7 @@ TEST(Slippage, FreeTurnIsAboutTheAxis) {
   std::mt19937_64 random(3);
   for (int trial = 0; trial < 5; ++trial) {
     const Similarity pose = random_similarity(random);
-    const std::optional<Axis> axis = Slippage(torus(pose)).free_turn(0.001);
+    const std::optional<Axis> axis = Slippage(torus(pose)).free_rotation(0.001);
     ASSERT_TRUE(axis.has_value());
     EXPECT_GT(std::abs(axis->direction.dot(pose.rotation.col(2))), 0.9999);
     const Vector3d aside = axis->point - pose.translation;
@@ -103,7 +103,7 @@ TEST(Slippage, FreeTurnOfAPartIsAboutTheSameAxis) {
   };
   const auto quarter = surface_of(
       [&](double u, double v) -> Vector3d { return round(u / 4) + 0.4 * across(u, v); }, across);
-  const std::optional<Axis> axis = Slippage(quarter).free_turn(0.001);
+  const std::optional<Axis> axis = Slippage(quarter).free_rotation(0.001);
   ASSERT_TRUE(axis.has_value());
   EXPECT_GT(std::abs(axis->direction.z()), 0.9999);
   EXPECT_LT(axis->point.head<2>().norm(), 0.01);
@@ -122,12 +122,12 @@ TEST(Slippage, NothingTurnsThatIsHeldOrShifts) {
       }
       held.push_back({point, normal});
     }
-  EXPECT_FALSE(Slippage(held).free_turn(0.001).has_value());
+  EXPECT_FALSE(Slippage(held).free_rotation(0.001).has_value());
   // A gutter with waves across: it can only be shifted along.
   const auto gutter = surface_of(
       [](double u, double v) { return Vector3d(4 * u, v, 0.2 * std::sin(2 * kTurn * v)); },
       [](double, double v) { return Vector3d(0, -0.4 * kTurn * std::cos(2 * kTurn * v), 1); });
-  EXPECT_FALSE(Slippage(gutter).free_turn(1).has_value());
+  EXPECT_FALSE(Slippage(gutter).free_rotation(1).has_value());
 }
 
 }  // namespace

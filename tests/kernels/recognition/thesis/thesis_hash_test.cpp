@@ -13,7 +13,7 @@ namespace semigeo::kernels {
 namespace {
 
 OrientedFeature feature(const Eigen::Vector3f& position, float value,
-                        FeatureKind kind = FeatureKind::mean, int level = 1) {
+                        FeatureKind kind = FeatureKind::kMean, int level = 1) {
   OrientedFeature result;
   result.position = position;
   result.normal = {0, 0, 1};
@@ -108,13 +108,13 @@ TEST(StrongestFeatures, AreOfOneKindAndLevelByTheirSize) {
   features.features = {feature({0, 0, 0}, 1),
                        feature({0, 0, 0}, -3),
                        feature({0, 0, 0}, 2),
-                       feature({0, 0, 0}, 9, FeatureKind::gaussian),
-                       feature({0, 0, 0}, -9, FeatureKind::mean_torsion),
-                       feature({0, 0, 0}, 9, FeatureKind::mean, 0)};
-  EXPECT_EQ(strongest_features(features, FeatureKind::mean, 1, 2),
+                       feature({0, 0, 0}, 9, FeatureKind::kGaussian),
+                       feature({0, 0, 0}, -9, FeatureKind::kMeanTorsion),
+                       feature({0, 0, 0}, 9, FeatureKind::kMean, 0)};
+  EXPECT_EQ(strongest_features(features, FeatureKind::kMean, 1, 2),
             (std::vector<std::uint16_t>{1, 2}));
-  EXPECT_EQ(strongest_features(features, FeatureKind::mean, 1, 10).size(), 3);
-  EXPECT_EQ(strongest_features(features, FeatureKind::mean_torsion, 1, 10),
+  EXPECT_EQ(strongest_features(features, FeatureKind::kMean, 1, 10).size(), 3);
+  EXPECT_EQ(strongest_features(features, FeatureKind::kMeanTorsion, 1, 10),
             (std::vector<std::uint16_t>{4}));
 }
 

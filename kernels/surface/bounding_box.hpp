@@ -1,0 +1,17 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+namespace semigeo::kernels {
+
+/// Returns the smallest box along the axes that holds all points, in their precision; an empty one
+/// without points. `Points` is any range of vectors of three coordinates. Linear cost.
+template <typename Points>
+auto bounding_box(const Points& points) {
+  using Scalar = typename Points::value_type::Scalar;
+  Eigen::AlignedBox<Scalar, 3> box;
+  for (const auto& p : points) box.extend(p);
+  return box;
+}
+
+}  // namespace semigeo::kernels
