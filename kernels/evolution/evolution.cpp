@@ -9,7 +9,7 @@
 namespace semigeo::kernels {
 namespace {
 
-/// What a patch determines, whole or not.
+/// Holds what a patch determines, whole or not.
 struct PatchEstimate {
   Eigen::Vector3f moved;      ///< smoothed position, relative to the vertex
   PatchDerivatives smoothed;  ///< of the smoothed surface; only the tangents count

@@ -12,9 +12,9 @@
 namespace semigeo::kernels {
 namespace {
 
-/// Whether two edges no longer than `radius` together lead to a comparable vertex that is higher.
-/// Along the surface it is not farther; most that are no maximum are found out here, at a tenth of
-/// the cost of a ball.
+/// Tells whether two edges no longer than `radius` together lead to a comparable vertex that is
+/// higher. Along the surface it is not farther; most that are no maximum are found out here, at a
+/// tenth of the cost of a ball.
 bool outdone_two_edges_away(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
                             const CurvatureField& field, std::int32_t v, double radius) {
   const auto length = [&](std::int32_t a, std::int32_t b) {

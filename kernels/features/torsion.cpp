@@ -9,9 +9,10 @@
 namespace semigeo::kernels {
 namespace {
 
-/// Curvature times sample distance below which a curve is straight, and has no osculating plane.
+/// The curvature times sample distance below which a curve counts as straight: it has no osculating
+/// plane.
 constexpr double kStraight = 1e-3;
-/// Nothing higher can be reached.
+/// The height of the pass where nothing higher can be reached.
 constexpr float kNoPass = -1;
 
 }  // namespace

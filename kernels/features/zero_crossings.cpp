@@ -58,7 +58,7 @@ class Tracer {
   }
 
  private:
-  /// Position among the faces of the one across h, or kNone.
+  /// Returns the place of the face across h among the faces, or kNone.
   std::int32_t beyond(std::int32_t h) const {
     const std::int32_t t = surface_.twin[h];
     if (t == kNone) return kNone;
@@ -79,7 +79,7 @@ class Tracer {
     contours_.points.push_back(point);
   }
 
-  /// Both at the same vertex.
+  /// Tells whether both points lie at the same vertex.
   static bool same(const EdgePoint& a, const EdgePoint& b) {
     return a.t == 0 && b.t == 0 && a.positive == b.positive;
   }

@@ -12,7 +12,7 @@ constexpr int kTerms = (degree + 1) * (degree + 2) / 2;
 template <int degree>
 using Basis = Eigen::Matrix<double, kTerms<degree>, 1>;
 
-/// Monomials u^i v^j by degree: 1, u, v, uu, uv, vv, ...
+/// Returns the monomials u^i v^j by degree: 1, u, v, uu, uv, vv, ...
 template <int degree>
 Basis<degree> monomials(double u, double v) {
   Basis<degree> b;

@@ -10,11 +10,11 @@
 namespace semigeo::kernels {
 namespace {
 
-/// Below this share of its squared size a face counts as having no area.
+/// The share of its squared size below which a face counts as having no area.
 constexpr float kFlatFace = 1e-6f;
 constexpr float kTiny = 1e-30f;
 
-/// The squared edges of a half-edge's frame: e1 along it, e2 to the apex.
+/// Holds the scalar products of the edges of a half-edge's frame: e1 along it, e2 to the apex.
 struct Metric {
   float e11, e12, e22;
 };
@@ -26,8 +26,8 @@ Metric metric_of(const GeodesicFace& face, int corner) {
   return {d + face.dot[second], d, d + face.dot[third]};
 }
 
-/// The same ray in the frame of that half-edge of its face whose apex it approaches fastest. It
-/// then leaves the face through one of the two other edges.
+/// Returns the same ray in the frame of that half-edge of its face whose apex it approaches
+/// fastest. It then leaves the face through one of the two other edges.
 Ray towards_apex(const Ray& ray) {
   const float wa = 1 - ray.at.x - ray.at.y;
   const float da = -(ray.dx + ray.dy);

@@ -5,7 +5,8 @@
 namespace semigeo::kernels {
 namespace {
 
-/// Fills one half of a column, outwards from its base sample; result: how many samples exist.
+/// Fills one half of a column, outwards from its base sample. Returns the number of samples that
+/// exist.
 std::int8_t trace_half_column(const SampledSurface& surface, const Ray& start, float step,
                               const Eigen::Vector4f& centre, Eigen::Vector4f* base, int stride) {
   GeodesicLine line(surface.mesh, start);

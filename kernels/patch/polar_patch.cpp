@@ -15,7 +15,8 @@ struct Weights {
   double variance;                        ///< along an axis
 };
 
-/// The Gaussian of `sigma` integrated over the disc of half a step and over rings of one step.
+/// Returns the Gaussian of `sigma` integrated over the disc of half a step and over rings of one
+/// step.
 Weights ring_weights(double sigma) {
   const auto outside = [&](double radius) {
     return std::exp(-radius * radius / (2 * sigma * sigma));
@@ -47,7 +48,7 @@ double angle(int ray) {
   return 2 * std::numbers::pi * ray / kRays;
 }
 
-/// (cos, sin) of every ray's angle.
+/// Returns (cos, sin) of the angle of every ray.
 const std::array<Eigen::Vector2f, kRays>& ray_directions() {
   static const std::array<Eigen::Vector2f, kRays> directions = [] {
     std::array<Eigen::Vector2f, kRays> d;
@@ -58,7 +59,7 @@ const std::array<Eigen::Vector2f, kRays>& ray_directions() {
   return directions;
 }
 
-/// Filters for a whole patch, made once; `samples()` of every whole patch has the same order.
+/// Holds filters for a whole patch, made once; `samples()` of every whole patch has the same order.
 DerivativeFilters whole_filters(bool fitted) {
   PolarPatch patch;
   patch.reach.fill(kReach);

@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kMinQuadraticPivot = 2e-3;
 constexpr double kMinQuarticPivot = 1e-8;
-/// Sigma of the weights of the quartic, in steps. Less than a whole patch's: on the side without
-/// samples the fit extrapolates, and far samples add more bias than they take noise.
+/// The sigma of the weights of the quartic, in steps. Less than a whole patch's: on the side
+/// without samples the fit extrapolates, and far samples add more bias than they take noise.
 constexpr double kRimSigma = 1.4;
 
 }  // namespace

@@ -8,7 +8,7 @@
 namespace semigeo::kernels {
 namespace {
 
-/// The float interval of the squares of [low, high].
+/// Returns the interval of the squares of [low, high], as floats.
 struct SquaredBand {
   float least;
   float most;

@@ -28,7 +28,7 @@ struct Cloud {
   }
 };
 
-/// The one nearest point within a limit; of equally near ones the first.
+/// Collects the nearest point within a limit; the first where several are equally near.
 class NearestWithin {
  public:
   using DistanceType = float;
@@ -75,8 +75,8 @@ Vector3d middle_of(const SurfaceSamples& samples, std::size_t n) {
   return middle;
 }
 
-/// Whether q with normal n, the sample nearest to p, is the surface that p lies on. Samples stand
-/// for the surface round them: beside them it goes on.
+/// Tells whether q with normal n, the sample nearest to p, is the surface that p lies on. Samples
+/// stand for the surface round them: beside them it goes on.
 bool on_surface(const Vector3f& p, const Vector3f& q, const Vector3f& n, float tolerance,
                 float spacing) {
   const Vector3f offset = p - q;
@@ -86,7 +86,7 @@ bool on_surface(const Vector3f& p, const Vector3f& q, const Vector3f& n, float t
   return offset.squaredNorm() - height * height <= reach * reach;
 }
 
-/// A sample of a posed model and what of the scene it touches.
+/// Holds a sample of a posed model and what it touches of the scene.
 struct Contact {
   OrientedPoint posed;
   std::int64_t near = -1;  ///< the nearest sample of the scene, -1: none within the limit
@@ -95,7 +95,7 @@ struct Contact {
   float cosine = 0;        ///< between the normals
 };
 
-/// Samples of a model in one pose, against a scene.
+/// Compares samples of a model in one pose with a scene.
 class PosedModel {
  public:
   PosedModel(const SurfaceSamples& model, double diagonal, const Similarity& pose,

@@ -73,7 +73,7 @@ void PoseVotes::for_agreeing(const Placement& seed, const PoseTolerance& toleran
       take(*p);
 }
 
-/// Half of them the heaviest votes, half evenly spread over the rest.
+/// Returns seeds: half of them are the heaviest votes, half are spread evenly over the rest.
 std::vector<std::int32_t> PoseVotes::seeds(int most) const {
   std::vector<std::int32_t> order(placements_.size());
   std::iota(order.begin(), order.end(), 0);

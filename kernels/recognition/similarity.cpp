@@ -11,7 +11,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Columns: along the side from corner 1 to corner 2, the height on it, the triangle's normal.
+/// Returns a frame with these columns: along the side from corner 1 to corner 2, the height on it,
+/// the normal of the triangle.
 Matrix3d frame_of(const OrientedTriangle& t) {
   Matrix3d frame;
   frame.col(0) = (t.points[2] - t.points[1]).normalized();
@@ -29,7 +30,7 @@ double perimeter_of(const OrientedTriangle& t) {
          (t.points[0] - t.points[2]).norm();
 }
 
-/// Corners and normals about the centroid: six directions of much the same weight.
+/// Returns corners and normals about the centroid: six directions of nearly the same weight.
 std::array<Vector3d, 6> directions_of(const OrientedTriangle& t) {
   const Vector3d centroid = centroid_of(t);
   const double length = perimeter_of(t) / 3;

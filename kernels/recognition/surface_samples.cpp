@@ -26,7 +26,8 @@ double area_of(std::span<const Vector3f> points, const Triangle& triangle) {
   return 0.5 * u.cross(v).norm();
 }
 
-/// Faces along a Z-order curve: equal steps of area along it are spread evenly in space.
+/// Returns the faces along a Z-order curve: equal steps of area along it are spread evenly in
+/// space.
 std::vector<std::int32_t> along_curve(std::span<const Vector3f> points, Triangles triangles) {
   const Eigen::AlignedBox3f box = bounding_box(points);
   const float cell = std::max(box.sizes().maxCoeff(), 1e-30F) / 1023;
@@ -46,7 +47,7 @@ std::vector<std::int32_t> along_curve(std::span<const Vector3f> points, Triangle
   return order;
 }
 
-/// Pairs of vertices that only one triangle joins.
+/// Returns the pairs of vertices that only one triangle joins.
 std::vector<std::array<std::int32_t, 2>> boundary_edges(Triangles triangles) {
   std::vector<std::uint64_t> edges;
   edges.reserve(3 * triangles.size());

@@ -110,7 +110,7 @@ std::uint64_t packed(const Corners& corners) {
   return std::uint64_t{corners[0]} << 32 | std::uint64_t{corners[1]} << 16 | corners[2];
 }
 
-/// What of a triplet belongs to one feature, whatever its triangle is.
+/// Holds what belongs to one feature of a triplet, whatever its triangle is.
 struct Corner {
   Vector3f position;
   Vector3f normal;
@@ -172,7 +172,7 @@ class LevelTriplets {
     number_[i] = kNobody;
   }
 
-  /// Three in order; equal ones stay as they are.
+  /// Puts three in order; equal ones stay as they are.
   template <typename Value, typename Before>
   static void order(std::array<Value, 3>& three, const Before& before) {
     if (before(three[1], three[0])) std::swap(three[0], three[1]);
@@ -182,7 +182,7 @@ class LevelTriplets {
     }
   }
 
-  /// Length of the side opposite to each corner.
+  /// Returns the length of the side opposite to each corner.
   std::array<float, 3> sides(const Corners& t) const {
     const auto length = [&](int a, int b) {
       return (corners_[t[a]].position - corners_[t[b]].position).norm();

@@ -10,10 +10,11 @@
 namespace semigeo::kernels {
 namespace {
 
-/// Where all is flat, small regions come first: so many times their edge length counts as distance.
+/// The share of its edge length that counts as distance of a vertex: where all is flat, small
+/// regions come first.
 constexpr double kSizeMatters = 1e-6;
-/// Without a tolerance, a removal that moves the surface by more than so many times the distance
-/// that brought it forward waits for its turn.
+/// The factor by which a removal may move the surface farther than its key said. Beyond it, without
+/// a tolerance, it waits for its turn.
 constexpr double kPatience = 1.5;
 
 class Decimation {
@@ -100,8 +101,8 @@ class Decimation {
     }
   }
 
-  /// The vertex itself and all that its faces cover, each with the face of the cover that is
-  /// nearest. result: the largest distance.
+  /// Collects the vertex itself and all that its faces cover, each with the face of the cover that
+  /// is nearest. Returns the largest distance.
   double find_covering_faces(std::span<const Triangle> cover) {
     covered_.assign(1, {region_.vertex, 0, 0.0f});
     for (const std::int32_t h : region_.spokes)

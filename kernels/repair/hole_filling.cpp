@@ -9,9 +9,9 @@
 namespace semigeo::kernels {
 namespace {
 
-/// A loop spans its part if its vector area has this share of the part's area ...
+/// The share of the part's area that the vector area of a loop has if it spans the part.
 constexpr double kSpanningArea = 0.1;
-/// ... or its mean radius this share of the part's.
+/// The share of the part's mean radius that the mean radius of a loop has if it spans the part.
 constexpr double kSpanningRadius = 0.5;
 
 struct PartSize {

@@ -18,18 +18,21 @@
 namespace semigeo::kernels {
 namespace {
 
-/// Rounds of inserting vertices; each halves the area of the faces at least.
+/// The number of rounds in which vertices are inserted; each round at least halves the area of the
+/// faces.
 constexpr int kRounds = 24;
-/// Fairing changes the shape, and with it the weights that it was computed with.
+/// The number of fairings: each changes the shape, and with it the weights that it was computed
+/// with.
 constexpr int kFairings = 2;
-/// Rings of faces round the hole that tell how the surface continues ...
+/// The number of rings of faces round the hole that tell how the surface continues.
 constexpr int kRings = 4;
-/// ... in waves of so many edges and more; shorter ones would be noise that the patch amplifies.
+/// The shortest waves that continue, in edges: shorter ones would be noise that the patch
+/// amplifies.
 constexpr double kWaveLength = 5;
-/// Edges of the longest loop for `cover_loop`, whose time grows with the third power.
+/// The number of edges of the longest loop for `cover_loop`, whose time grows with the third power.
 constexpr std::int32_t kLongestCover = 512;
 
-/// A boundary loop of a surface, as points.
+/// Describes a boundary loop of a surface, as points.
 struct Rim {
   const Surface& surface;
   std::span<const std::int32_t> loop;   ///< Vertices of the surface.
@@ -221,7 +224,7 @@ void Patch::make_delaunay() {
   }
 }
 
-/// Whether the centroid of a face lies farther from its corners than vertices should.
+/// Tells whether the centroid of a face lies farther from its corners than vertices should.
 bool Patch::wants_vertex(std::int32_t face) const {
   const Triangle& t = mesh_.triangles[face];
   const Eigen::Vector3d centroid = (points_[t[0]] + points_[t[1]] + points_[t[2]]) / 3;

@@ -14,7 +14,7 @@ constexpr double kBending = 0.25;
 constexpr double kFold = -0.85;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Least costs of all stretches of a loop, shortest first.
+/// Computes the least costs of all stretches of a loop, the shortest first.
 class Cover {
  public:
   Cover(std::span<const Eigen::Vector3d> loop, std::span<const Eigen::Vector3d> normals)

@@ -9,11 +9,11 @@
 namespace semigeo::kernels {
 namespace {
 
-/// Loops up to this length try all splits.
+/// The length up to which all splits of a loop are tried.
 constexpr int kExhaustive = 128;
-/// Longer ones try those from so many vertices ...
+/// The number of vertices from which splits of longer loops are tried.
 constexpr int kStarts = 24;
-/// ... that leave at least one so-many-th on each side.
+/// The share of a longer loop, one over this, that a split must leave on each side.
 constexpr int kLeastShare = 8;
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -48,7 +48,7 @@ std::span<const Triangle> LoopSplitter::split_as_far_as_possible(
   return triangles_;
 }
 
-/// Seen against `normal`, or, if that is zero, each sub-loop against its own.
+/// Splits all sub-loops, seen against `normal`, or, if that is zero, each against its own.
 bool LoopSplitter::split_all(std::span<const Eigen::Vector3d> loop, const Joined& joined,
                              const Eigen::Vector3d& normal,
                              std::vector<std::vector<std::int32_t>>* stuck) {
@@ -85,7 +85,7 @@ bool LoopSplitter::split_all(std::span<const Eigen::Vector3d> loop, const Joined
   return true;
 }
 
-/// Twice the vector area of the sub-loop in hand; zero if that is rounding only.
+/// Returns twice the vector area of the current sub-loop; zero if that is rounding only.
 Eigen::Vector3d LoopSplitter::own_normal(std::span<const Eigen::Vector3d> loop) const {
   const Eigen::Vector3d& anchor = loop[current_[0]];
   Eigen::Vector3d area = Eigen::Vector3d::Zero();
@@ -100,7 +100,7 @@ Eigen::Vector3d LoopSplitter::own_normal(std::span<const Eigen::Vector3d> loop) 
   return area;
 }
 
-/// The sub-loop in hand, seen against `normal`. False if that is zero.
+/// Projects the current sub-loop, seen against `normal`. Returns false if that is zero.
 bool LoopSplitter::project(std::span<const Eigen::Vector3d> loop, const Eigen::Vector3d& normal) {
   const double length = normal.norm();
   if (!(length > 0)) return false;
@@ -157,13 +157,13 @@ void LoopSplitter::consider(int i, int j, bool planes, double weight, const Join
   if (ratio > at_least && !joined(current_[i], current_[j])) best = {i, j, ratio * weight};
 }
 
-/// Twice the area of (i, j, k): positive if k lies left of the line from i to j.
+/// Returns twice the area of (i, j, k), positive if k lies left of the line from i to j.
 double LoopSplitter::side(int i, int j, int k) const {
   return cross(projected_[j] - projected_[i], projected_[k] - projected_[i]);
 }
 
-/// Ratio of the split by the plane through i < j; anything up to `at_least` if that is invalid or
-/// not above it.
+/// Returns the ratio of the split by the plane through i < j; anything up to `at_least` if that is
+/// invalid or not above it.
 double LoopSplitter::plane_ratio(int i, int j, double at_least) const {
   const double length2 = (projected_[j] - projected_[i]).squaredNorm();
   if (!(length2 > 0)) return 0;
@@ -184,7 +184,7 @@ double LoopSplitter::plane_ratio(int i, int j, double at_least) const {
   return least / length2;
 }
 
-/// Whether the line to j leaves vertex i into the inside of the loop.
+/// Tells whether the line to j leaves vertex i into the inside of the loop.
 bool LoopSplitter::inside_corner(int i, int j) const {
   const int a = before(i);
   const int b = after(i);
@@ -192,7 +192,7 @@ bool LoopSplitter::inside_corner(int i, int j) const {
   return !(side(i, a, j) >= 0 && side(i, j, b) >= 0);
 }
 
-/// Whether the line i - j meets the edge k - after(k), which must have neither as its end.
+/// Tells whether the line i - j meets the edge k - after(k), which must have neither as its end.
 bool LoopSplitter::crosses(int i, int j, int k) const {
   const int l = after(k);
   const double a = side(i, j, k);
@@ -203,8 +203,8 @@ bool LoopSplitter::crosses(int i, int j, int k) const {
   return !((c > 0 && d > 0) || (c < 0 && d < 0));
 }
 
-/// Ratio of the split along the diagonal i < j, with distances to the line between the two; 0 if it
-/// leaves the inside of the loop.
+/// Returns the ratio of the split along the diagonal i < j, with distances to the line between the
+/// two; 0 if it leaves the inside of the loop.
 double LoopSplitter::diagonal_ratio(int i, int j) const {
   const double length = (projected_[j] - projected_[i]).norm();
   if (!(length > 0) || !inside_corner(i, j) || !inside_corner(j, i)) return 0;

@@ -13,7 +13,8 @@ namespace {
 /// Cotangents outside would give negative weights, or let single slivers rule.
 constexpr double kLeastCotangent = 0.05;
 constexpr double kLargestCotangent = 5;
-/// Vertices that move farther than this many radii of the patch have been thrown out of it.
+/// The distance from the centroid, in radii of the mesh, beyond which a vertex has been thrown out
+/// of it.
 constexpr double kReach = 3;
 
 std::vector<double> vertex_areas(const std::vector<Eigen::Vector3d>& points,
@@ -36,13 +37,14 @@ double limited_cotangent(const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
   return std::clamp(u.dot(v) / sine, kLeastCotangent, kLargestCotangent);
 }
 
-/// Linear equations in the places of the vertices that move.
+/// Holds linear equations in the places of the vertices that move.
 struct Equations {
   Eigen::SparseMatrix<double> matrix;              ///< (rows, moving vertices)
   Eigen::Matrix<double, Eigen::Dynamic, 3> right;  ///< (rows, 3)
 };
 
-/// `column`: that of each moving vertex, -1 for the held ones; `moving`: their number.
+/// Returns the equations. `column` holds the column of each moving vertex and -1 for the held ones;
+/// `moving` is the number of columns.
 Equations plate_equations(const std::vector<Eigen::Vector3d>& points,
                           std::span<const Eigen::Vector3d> targets,
                           std::span<const PlateRole> roles, std::span<const Triangle> triangles,
@@ -85,7 +87,7 @@ Equations plate_equations(const std::vector<Eigen::Vector3d>& points,
   return equations;
 }
 
-/// Whether all places are finite and somewhere near the mesh.
+/// Tells whether all places are finite and somewhere near the mesh.
 bool plausible(const Eigen::MatrixXd& places, const std::vector<Eigen::Vector3d>& points) {
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
   for (const auto& p : points) centroid += p / static_cast<double>(points.size());

@@ -16,10 +16,10 @@
 namespace semigeo::kernels {
 namespace {
 
-/// A vertex with more faces stays where it is when another joins it: to look at all of its edges
-/// again each time would cost the square of their number.
+/// The number of faces beyond which a vertex stays where it is when another joins it: to examine
+/// all of its edges again each time would cost the square of their number.
 constexpr int kLargeFan = 64;
-/// Sides of what is left of a surface that has vanished, in shortest sides.
+/// The sides of what is left of a surface that has vanished, in shortest sides.
 constexpr double kRemnantEdge = 10;
 
 bool has_large_fan(const Connectivity& mesh, std::int32_t v) {
@@ -29,7 +29,7 @@ bool has_large_fan(const Connectivity& mesh, std::int32_t v) {
   return false;
 }
 
-/// Squared least height of a triangle.
+/// Returns the squared least height of a triangle.
 double squared_height(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                       const Eigen::Vector3d& c) {
   const double longest2 =
@@ -128,7 +128,7 @@ void Remesher::remove_short_edges() {
   }
 }
 
-/// If the triangle or tetrahedron of h is all that is left, makes a regular one of it.
+/// Makes the triangle or tetrahedron of h regular if it is all that is left. Returns whether it is.
 bool Remesher::keep_remnant(std::int32_t h) {
   const Connectivity& surface = mesh_.connectivity;
   const std::int32_t t = surface.twin[h];
@@ -150,7 +150,7 @@ bool Remesher::keep_remnant(std::int32_t h) {
   return true;
 }
 
-/// Whether the two faces of an edge would be less flat with the other diagonal between them.
+/// Tells whether the two faces of an edge would be less flat with the other diagonal between them.
 bool Remesher::flip_is_better(std::int32_t h) const {
   const std::int32_t t = mesh_.connectivity.twin[h];
   if (t == kNone) return false;
@@ -182,7 +182,7 @@ void Remesher::remove_flat_face(std::int32_t f) {
   push_face(face_of(mesh_.connectivity.twin[h]));
 }
 
-/// Makes one vertex of two, or takes out of the way what prevents it.
+/// Makes one vertex of the two ends of an edge, or removes what prevents it.
 void Remesher::remove_edge(std::int32_t edge) {
   const Connectivity& surface = mesh_.connectivity;
   const std::int32_t h = editor_.from_larger_fan(edge);
@@ -228,8 +228,8 @@ void Remesher::remove_edge(std::int32_t edge) {
   }
 }
 
-/// The least cosine by which faces round v would turn if it moved to p; those with `other` are not
-/// counted, they vanish.
+/// Returns the least cosine between the normals of the faces round v before and after a move of v
+/// to p. Faces that contain `other` do not count: they vanish.
 double Remesher::least_cosine(std::int32_t v, std::int32_t other, const Eigen::Vector3d& p) const {
   double least = 1;
   const Eigen::Vector3d old = mesh_.point(v);
@@ -247,8 +247,8 @@ double Remesher::least_cosine(std::int32_t v, std::int32_t other, const Eigen::V
   return least;
 }
 
-/// Where two vertices become one: on the boundary if one of them is; else half way if they are
-/// close and no face is turned over by it, else where faces turn least.
+/// Returns where two vertices become one: on the boundary if one of them lies there; otherwise half
+/// way if they are close and no face is turned over by it, and otherwise where faces turn least.
 Eigen::Vector3d Remesher::merged_point(std::int32_t a, std::int32_t b) const {
   Eigen::Vector3d pa = mesh_.point(a);
   Eigen::Vector3d pb = mesh_.point(b);
@@ -269,8 +269,8 @@ Eigen::Vector3d Remesher::merged_point(std::int32_t a, std::int32_t b) const {
   return best;
 }
 
-/// If the cycle of the ends of h and `third` has but one vertex on one of its sides: a half-edge
-/// to that vertex.
+/// Returns a half-edge to the vertex inside the cycle of the ends of h and `third`, if one side of
+/// it has a single vertex; otherwise kNone.
 std::int32_t Remesher::spoke_inside(std::int32_t h, std::int32_t third) const {
   const Connectivity& surface = mesh_.connectivity;
   for (const std::int32_t side : {h, surface.twin[h]}) {
@@ -285,7 +285,7 @@ std::int32_t Remesher::spoke_inside(std::int32_t h, std::int32_t third) const {
   return kNone;
 }
 
-/// Makes the ends of h one; the survivor stays where it is.
+/// Makes one vertex of the ends of h; the survivor stays where it is.
 void Remesher::absorb(std::int32_t h) {
   const std::int32_t a = editor_.survivor(h);
   carry_over(a, mesh_.connectivity.origin(h) + mesh_.connectivity.target(h) - a);
@@ -294,7 +294,7 @@ void Remesher::absorb(std::int32_t h) {
   ++counts_.removed;
 }
 
-/// What a vertex keeps of one that joins it, besides the place.
+/// Gives vertex a what it keeps of b, which joins it, except for the place.
 void Remesher::carry_over(std::int32_t a, std::int32_t b) {
   const Eigen::Vector3f normal = mesh_.normals[a] + mesh_.normals[b];
   if (normal.norm() > 0) mesh_.normals[a] = normal.normalized();
@@ -359,7 +359,7 @@ void Remesher::mark_face(std::int32_t f, std::uint8_t filled) {
   mesh_.face_filled[f] = filled;
 }
 
-/// False if a new face would be too small.
+/// Halves an edge. Returns false, and does nothing, if a new face would be too small.
 bool Remesher::split(std::int32_t h, double shortest) {
   const Connectivity& surface = mesh_.connectivity;
   const std::int32_t t = surface.twin[h];
@@ -409,7 +409,7 @@ void Remesher::refine(std::span<const std::int32_t> edges, std::int64_t faces, d
   }
 }
 
-/// The vertices that are left, each new one behind the old one that it comes from.
+/// Returns the vertices that are left, each new one behind the old one that it comes from.
 std::vector<std::int32_t> Remesher::order_of_survivors() {
   const auto& births = editor_.births();
   const auto first_new = static_cast<std::int32_t>(first_new_);

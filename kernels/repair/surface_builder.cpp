@@ -12,7 +12,7 @@
 namespace semigeo::kernels {
 namespace {
 
-/// Zero, or the middle of the bounding box rounded to a power of ten below its size.
+/// Returns zero, or the middle of the bounding box rounded to a power of ten below its size.
 Eigen::Vector3d choose_origin(const std::vector<Eigen::Vector3d>& points) {
   if (points.empty()) return Eigen::Vector3d::Zero();
   const Eigen::AlignedBox3d box = bounding_box(points);
@@ -32,7 +32,8 @@ std::uint64_t hash_point(const Eigen::Vector3f& p) {
   return hash;
 }
 
-/// Merges equal points in place, keeping the order of first appearance; result: old to new index.
+/// Merges equal points in place, in the order of first appearance. Returns the new index of each
+/// point.
 std::vector<std::int32_t> weld(std::vector<Eigen::Vector3f>& points) {
   std::vector<std::int32_t> new_index(points.size());
   std::vector<std::int32_t> table(std::bit_ceil(points.size() * 3 / 2 + 1), kNone);
@@ -95,8 +96,8 @@ std::int64_t drop_duplicates(std::vector<Triangle>& triangles, std::int64_t vert
   return static_cast<std::int64_t>(dropped);
 }
 
-/// No edge has more than two faces, the two of each run along it in opposite directions, and none
-/// lie back to back: nothing to repair.
+/// Tells whether there is nothing to repair: no edge has more than two faces, the two of each run
+/// along it in opposite directions, and none lie back to back.
 bool is_clean(const EdgeGroups& groups, const std::vector<Triangle>& triangles) {
   const auto corner = [&](std::int32_t h) { return triangles[face_of(h)][corner_of(h)]; };
   for (std::int64_t e = 0; e < groups.edge_count(); ++e) {

@@ -11,11 +11,11 @@
 namespace semigeo::kernels {
 namespace {
 
-/// Rings with more vertices are not worth the time.
+/// The number of vertices beyond which a ring is not worth the time.
 constexpr std::size_t kLargestRing = 40;
-/// Splits flatter than this would leave needles.
+/// The least ratio of a split: flatter ones would leave needles.
 constexpr double kLeastRatio = 0.02;
-/// A face may turn by the angle with this cosine.
+/// The cosine of the angle by which a face may turn.
 constexpr double kLeastCosine = 0.2;
 
 double distance_from_line(const Eigen::Vector3d& p, const Eigen::Vector3d& a,

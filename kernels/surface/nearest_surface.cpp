@@ -13,9 +13,9 @@
 namespace semigeo::kernels {
 namespace {
 
-/// Faces a leaf.
+/// The number of faces of a leaf.
 constexpr std::size_t kLeaf = 4;
-/// Bits a coordinate of the Z-order.
+/// The number of bits of a coordinate of the Z-order.
 constexpr int kBits = 16;
 
 Eigen::Vector3d nearest_on_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a,

@@ -9,7 +9,7 @@ namespace semigeo::kernels {
 SurfaceEditor::SurfaceEditor(Connectivity& mesh)
     : mesh_(mesh), face_count_(mesh.face_count()), vertex_count_(mesh.vertex_count()) {}
 
-/// Whether the fan of a has at least as many faces as that of b. Walks the smaller one.
+/// Tells whether the fan of a has at least as many faces as that of b. The smaller one is walked.
 bool SurfaceEditor::larger_fan(std::int32_t a, std::int32_t b) const {
   const std::array<std::int32_t, 2> start = {mesh_.outgoing[a], mesh_.outgoing[b]};
   std::array<std::int32_t, 2> at = start;
@@ -63,9 +63,10 @@ void SurfaceEditor::unite(std::int32_t h, std::int32_t other) {
   if (other != kNone) mesh_.twin[other] = h;
 }
 
-/// A face loses the edge opposite to its corner; the half-edges across its other two edges, one
-/// `into` the corner and one `from` it, become twins. `gone` left the corner. result: a half-edge
-/// that leaves the vertex where the lost edge was, or kNone.
+/// Closes a face that loses the edge opposite to a corner: the half-edges across its other two
+/// edges, one `into` the corner and one `from` it, become twins. `gone` is the half-edge of the
+/// face that left the corner. Returns a half-edge that leaves the vertex where the lost edge was,
+/// or kNone.
 std::int32_t SurfaceEditor::fold(std::int32_t gone, std::int32_t into, std::int32_t from) {
   std::int32_t& outgoing = mesh_.outgoing[mesh_.origin(gone)];
   // On a boundary `gone` had no twin, and `from`, which now has none, is the first of the fan.
@@ -127,8 +128,8 @@ void SurfaceEditor::collapse(std::int32_t h) {
   --vertex_count_;
 }
 
-/// The half-edge with which the fan of the survivor will begin if that lies on a boundary, else
-/// kNone. Nothing is walked: the fan may be large.
+/// Returns the half-edge with which the fan of the survivor will begin if that lies on a boundary,
+/// otherwise kNone. Nothing is walked, since the fan may be large.
 std::int32_t SurfaceEditor::first_after_collapse(std::int32_t h) const {
   const std::int32_t t = mesh_.twin[h];
   // On a boundary h itself is the first of its origin, and goes.
@@ -173,8 +174,9 @@ std::int32_t SurfaceEditor::flip(std::int32_t h) {
   return halfedge(f, 1);
 }
 
-/// A vertex has come to have two fans: the smaller one gets a copy of it. `starts` lie in the fans,
-/// at least one in each; if a fan is open, the half-edge with which it begins is among them.
+/// Gives the smaller one of the two fans that a vertex has come to have a copy of the vertex.
+/// `starts` lie in the fans, at least one in each; if a fan is open, the half-edge with which it
+/// begins is among them.
 void SurfaceEditor::separate_fans(std::int32_t v, std::span<const std::int32_t> starts) {
   std::vector<std::int32_t> at(starts.begin(), starts.end());
   const auto begins = [this](std::int32_t h) { return mesh_.twin[h] == kNone; };

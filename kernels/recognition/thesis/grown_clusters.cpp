@@ -8,14 +8,14 @@
 namespace semigeo::kernels {
 namespace {
 
-/// The seven parameters of a pose.
+/// Holds the seven parameters of a pose.
 struct Parameters {
   double log_scale;
   Eigen::Vector3d place;  ///< of the model's centre
   Eigen::Quaterniond rotation;
 };
 
-/// A growing cluster: sums of its members' parameters.
+/// Holds a growing cluster, as sums of the parameters of its members.
 class Cluster {
  public:
   Cluster(const Parameters& first, double diagonal, const PoseTolerance& options)

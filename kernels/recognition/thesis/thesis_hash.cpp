@@ -8,13 +8,13 @@
 namespace semigeo::kernels {
 namespace {
 
-/// Corners' order, and which of them is the strongest.
+/// Holds the order of the corners, and which of them is the strongest.
 struct Order {
   std::array<int, 3> corners;
   int strongest;
 };
 
-/// A triangle of features, in the order in which they were chosen.
+/// Describes a triangle of features, in the order in which they were chosen.
 struct MeasuredTriangle {
   std::array<std::uint16_t, 3> features;
   std::array<double, 3> values;
@@ -45,7 +45,7 @@ ThesisTriplet triplet_of(const MeasuredTriangle& t, const Order& order) {
   return result;
 }
 
-/// Whether sides descend and the strongest is the strongest, but for these tolerances.
+/// Tells whether sides descend and the strongest is the strongest, up to these tolerances.
 bool in_order(const MeasuredTriangle& t, const Order& order, double length, double feature) {
   const auto& c = order.corners;
   const double longest = t.sides[c[0]];
@@ -60,7 +60,7 @@ bool in_order(const MeasuredTriangle& t, const Order& order, double length, doub
 constexpr std::array<std::array<int, 3>, 6> kPermutations = {
     {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
 
-/// The one order of a model: of equal sides and values the first.
+/// Returns the one order of a model; where sides or values are equal, the first.
 Order order_of(const MeasuredTriangle& t) {
   Order order{{0, 1, 2}, 0};
   std::ranges::stable_sort(order.corners, std::ranges::greater(),
