@@ -1,6 +1,7 @@
 """Every page: its links lead somewhere, its lines are short, the first page and those of folders are short.
 Started as `python3 -B pages_test.py REPOSITORY`."""
 
+import re
 import sys
 import unittest
 from pathlib import Path
@@ -11,6 +12,8 @@ ROOT = Path(sys.argv.pop(1)).resolve()
 LONGEST_LINE = 200
 LARGEST_FIRST_PAGE = 6000
 LONGEST_FOLDER_PAGE = 60
+NAMED_PATH = re.compile(r"`((?:engine|kernels|io|jobs|tests|bench|scripts|cmake|docs)/[\w./-]*)`")
+LAYERS = ("engine", "kernels", "io", "jobs/stages")
 FOLDER_PAGES = ("engine", "kernels", "io", "jobs", "jobs/stages", "tests", "bench")
 
 
@@ -47,6 +50,30 @@ class PagesTest(unittest.TestCase):
             with self.subTest(folder=folder):
                 lines = text_of(ROOT / folder / "README.md").splitlines()
                 self.assertLessEqual(len(lines), LONGEST_FOLDER_PAGE)
+
+    def test_files_that_pages_name_exist(self):
+        for page in pages_of(ROOT):
+            if page.name == "CHANGELOG.md":
+                continue
+            for number, line in split_blocks(text_of(page))[0]:
+                for name in NAMED_PATH.findall(line):
+                    with self.subTest(page=str(page.relative_to(ROOT)), line=number, name=name):
+                        path = ROOT / name
+                        self.assertTrue(path.exists() or any(path.parent.glob(f"{path.name}[._]*")))
+
+    def test_pages_of_layers_list_every_source(self):
+        for layer in LAYERS:
+            rows = re.findall(r"^\|(.*)\|[^|]*\|$", text_of(ROOT / layer / "README.md"), flags=re.MULTILINE)
+            named = {word for row in rows for word in re.findall(r"[a-z0-9_]+", row)}
+            for source in sorted((ROOT / layer).rglob("*.[ch]pp")):
+                with self.subTest(layer=layer, source=str(source.relative_to(ROOT))):
+                    self.assertIn(source.stem, named)
+
+    def test_decisions_ask_and_answer(self):
+        for page in sorted((ROOT / "docs/decisions").glob("[0-9]*.md")):
+            for heading in ("**Question.**", "**Decision.**", "**Code.**"):
+                with self.subTest(page=page.name, heading=heading):
+                    self.assertIn(heading, text_of(page))
 
     def test_every_decision_is_listed(self):
         folder = ROOT / "docs/decisions"
