@@ -24,6 +24,11 @@ std::string escaped(std::string_view path) {
   return text;
 }
 
+std::vector<std::string> escaped_all(std::vector<std::string> paths) {
+  for (std::string& path : paths) path = escaped(path);
+  return paths;
+}
+
 std::string unescaped(const std::string& text) {
   std::string path;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -38,6 +43,11 @@ std::string unescaped(const std::string& text) {
     }
   }
   return path;
+}
+
+std::vector<std::string> unescaped_all(std::vector<std::string> texts) {
+  for (std::string& text : texts) text = unescaped(text);
+  return texts;
 }
 
 }  // namespace semigeo::jobs

@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "jobs/run/local_executor.hpp"
-#include "jobs/slurm/slurm_executor.hpp"
+#include "jobs/run/local_runner.hpp"
+#include "jobs/slurm/slurm_stage.hpp"
 #include "jobs/stages/parameter.hpp"
 
 namespace semigeo::jobs::cli {

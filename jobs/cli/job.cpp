@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "jobs/cli/command.hpp"
+#include "jobs/kinds/all_kinds.hpp"
 #include "jobs/run/worker.hpp"
 #include "jobs/slurm/task.hpp"
 
@@ -47,11 +48,11 @@ void add_job(CLI::App& app, int& exit_code) {
   command->callback([task, &exit_code] {
     if (!task->list.empty()) {
       const auto program = std::filesystem::read_symlink("/proc/self/exe");
-      exit_code = run_task(task->list, task->number, program) ? kAllDone : kStoppedEarly;
+      exit_code = run_task(task->list, task->number, program, all_kinds()) ? kAllDone : kStoppedEarly;
       return;
     }
     const bool told = fcntl(kAnswers, F_GETFD) != -1;
-    exit_code = serve_jobs(STDIN_FILENO, told ? kAnswers : STDOUT_FILENO);
+    exit_code = serve_jobs(STDIN_FILENO, told ? kAnswers : STDOUT_FILENO, all_kinds());
   });
 }
 

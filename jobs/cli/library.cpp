@@ -13,7 +13,8 @@
 #include "jobs/cli/datasets.hpp"
 #include "jobs/cli/json_output.hpp"
 #include "jobs/cli/run_plan.hpp"
-#include "jobs/plan/library_plan.hpp"
+#include "jobs/kinds/library_plan.hpp"
+#include "jobs/kinds/triplets.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {
@@ -22,7 +23,6 @@ namespace fs = std::filesystem;
 using Models = std::map<std::string, LibraryModel>;
 
 struct LibraryOptions {
-  RunConfig config;  ///< Its archive is the folder that the library lies in.
   ExecutionOptions execution;
   std::string library;
   std::vector<std::string> inputs;  ///< archives and datasets, or names of models
@@ -78,13 +78,9 @@ Models kept_models(const LibraryPlace& place, const RecognitionParameters& param
     throw io::Error(place.library, "", "was made with other parameters", kRemedy);
   Models models;
   for (const io::ModelInfo& info : library.models()) {
-    const Job run{.kind = JobKind::kTriplets,
-                  .name = info.name,
-                  .input = {},
-                  .output = run_path(place.parts, info.name),
-                  .key = {}};
-    if (output_key(run).empty())
-      throw io::Error(run.output, "", "is missing or damaged: the triplets of " + info.name,
+    const fs::path run = run_path(place.parts, info.name);
+    if (output_key(triplets_kind(), run, KeyCheck::kWhole).empty())
+      throw io::Error(run, "", "is missing or damaged: the triplets of " + info.name,
                       kRemedy);
     models[info.name] = {.name = info.name};
   }
@@ -100,15 +96,14 @@ std::vector<LibraryModel> in_order(const Models& models) {
 /// Makes the library of the models that `models` names once the library's home is ours.
 int make(LibraryOptions& options, const LibraryPlace& place,
          const std::function<std::vector<LibraryModel>(DigestCache&)>& models) {
-  options.config.archive = place.home;
   const auto plan_of = [&](DigestCache& cache) {
     std::vector<PlannedJob> plan;
-    plan_library(plan, models(cache), place, options.config.jobs.recognition);
+    plan_library(plan, models(cache), place, {});
     if (options.execution.verify) verify_library_plan(plan);
     return plan;
   };
-  return run_plan(options.execution, options.config,
-                  {.plan = plan_of, .is_archive = place.home != place.parts});
+  return run_plan(options.execution,
+                  {.home = place.home, .plan = plan_of, .is_archive = place.home != place.parts});
 }
 
 int build(LibraryOptions& options) {
@@ -129,7 +124,7 @@ int add(LibraryOptions& options) {
   io::library_key(place.library);  // refuses what is none, before anything is made
   const Models added = models_in(options.inputs);
   return make(options, place, [&](DigestCache&) {
-    Models models = kept_models(place, options.config.jobs.recognition);
+    Models models = kept_models(place, {});
     for (const auto& [name, model] : added) models[name] = model;
     return in_order(models);
   });
@@ -139,7 +134,7 @@ int remove(LibraryOptions& options) {
   const LibraryPlace place = place_at(options.library);
   io::library_key(place.library);
   return make(options, place, [&](DigestCache&) {
-    Models models = kept_models(place, options.config.jobs.recognition);
+    Models models = kept_models(place, {});
     for (const std::string& name : options.inputs)
       if (models.erase(name) == 0)
         throw io::Error(place.library, "", "has no model " + name,
@@ -219,7 +214,6 @@ void add_maker(CLI::App* parent, const char* name, const char* about, const char
   command->fallthrough();
   command->callback([options, action, is_build, &exit_code] {
     settle(options->execution);
-    options->config.threads = options->execution.limits.threads;
     if (!is_build) options->library = library_file(options->library);
     exit_code = action(*options);
   });

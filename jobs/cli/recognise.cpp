@@ -11,7 +11,8 @@
 #include "jobs/cli/run_plan.hpp"
 #include "jobs/cli/table_options.hpp"
 #include "jobs/cli/temporary_folder.hpp"
-#include "jobs/plan/recognise_plan.hpp"
+#include "jobs/kinds/recognise_plan.hpp"
+#include "jobs/stages/recognise_job.hpp"
 #include "jobs/stages/recognised_file.hpp"
 
 namespace semigeo::jobs::cli {
@@ -20,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RecogniseOptions {
-  RunConfig config;  ///< Its archive is the folder that keeps what was recognised.
+  std::vector<fs::path> inputs;  ///< Scenes, and folders of them.
   ExecutionOptions execution;
   std::string library;
   std::string output;  ///< empty: nothing is kept
@@ -31,21 +32,19 @@ struct RecogniseOptions {
 
 void settle(RecogniseOptions& options) {
   settle(options.execution);
-  options.config.threads = options.execution.limits.threads;
   if (options.output.empty() && options.execution.executor == ExecutorKind::kSlurm)
     throw CLI::ValidationError("--output", "give a folder that all machines see with Slurm");
   SearchParameters& search = options.search;
   search.min_score = options.min_score.value_or(default_min_score(search.method));
   if (!(search.min_score >= 0) || !std::isfinite(search.min_score))
     throw CLI::ValidationError("--min-score", "give a number that is not negative");
-  options.config.jobs.search = search;
 }
 
 /// Not the archives at hand, unless they are named: their datasets are the models.
 std::vector<FoundScan> scenes_of(const RecogniseOptions& options, const SearchedLibrary& library) {
   std::vector<fs::path> passed_over = {library.path.parent_path()};
   if (!options.output.empty()) passed_over.emplace_back(options.output);
-  return find_scenes(options.config.inputs, passed_over);
+  return find_scenes(options.inputs, passed_over);
 }
 
 int recognise(RecogniseOptions& options) {
@@ -65,31 +64,28 @@ int recognise(RecogniseOptions& options) {
   }
   std::optional<TemporaryFolder> temporary;
   if (options.output.empty()) temporary.emplace();
-  RunConfig& config = options.config;
   const fs::path folder = temporary ? temporary->path() : fs::path(options.output);
-  config.archive = folder;
-  config.jobs.recognition = library.parameters;
   const RecogniseReport report = {.top = options.top, .has_files = !temporary};
   return run_plan(
-      options.execution, config,
-      {.plan =
+      options.execution,
+      {.home = folder,
+       .plan =
            [&](DigestCache&) {
-             return plan_recognition(scenes, library, config.jobs.search, folder, config.threads);
+             return plan_recognition(scenes, library, options.search, folder, options.execution.limits.threads);
            },
        .prepare = [&](const std::vector<PlannedJob>& plan) { record_scenes(folder, plan); },
        .is_archive = false,
        .is_kept = !temporary,
        .print =
-           [&](const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,
-               const RunSummary& summary) {
+           [&](const RunResult& result) {
              const auto print = options.execution.json ? print_recognised_json : print_recognised;
-             print(plan, outcomes, summary, library, report);
+             print(result, library, report);
            }});
 }
 
 void add_options(CLI::App* command, RecogniseOptions& options) {
   command
-      ->add_option("scenes", options.config.inputs,
+      ->add_option("scenes", options.inputs,
                    "Scans (.ply .obj .off .stl, each also .gz), datasets (.vtkhdf), folders")
       ->default_str("")
       ->required()

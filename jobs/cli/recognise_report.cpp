@@ -16,7 +16,7 @@ using nlohmann::json;
 constexpr int kNarrowestName = 12;
 
 bool has_file(const JobOutcome& outcome) {
-  return outcome.state == JobState::kDone || outcome.state == JobState::kUpToDate;
+  return is_made(outcome.state);
 }
 
 std::string counted(std::size_t count, const char* one, const char* more) {
@@ -107,9 +107,9 @@ void print_scene(const PlannedJob& planned, const json& document, std::size_t to
 
 }  // namespace
 
-void print_recognised(const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,
-                      const RunSummary& summary, const SearchedLibrary& library,
+void print_recognised(const RunResult& result, const SearchedLibrary& library,
                       const RecogniseReport& report) {
+  const auto& [plan, outcomes, summary] = result;
   std::size_t found = 0;
   for (std::size_t i = 0; i < plan.size(); ++i) {
     if (!has_file(outcomes[i])) continue;
@@ -130,9 +130,9 @@ void print_recognised(const std::vector<PlannedJob>& plan, const std::vector<Job
       summary.wall_seconds, summary.cpu_seconds, summary.peak_bytes / 1e6);
 }
 
-void print_recognised_json(const std::vector<PlannedJob>& plan,
-                           const std::vector<JobOutcome>& outcomes, const RunSummary& summary,
-                           const SearchedLibrary& library, const RecogniseReport& report) {
+void print_recognised_json(const RunResult& result, const SearchedLibrary& library,
+                           const RecogniseReport& report) {
+  const auto& [plan, outcomes, summary] = result;
   json document = {{"scenes", json::array()},
                    {"library", {{"path", library.path.string()}, {"digest", library.digest}}},
                    {"done", summary.done},

@@ -1,28 +1,25 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
-#include "jobs/cli/run_report.hpp"
-#include "jobs/plan/recognise_plan.hpp"
+#include "jobs/run/run.hpp"
+#include "jobs/kinds/recognise_plan.hpp"
 
 namespace semigeo::jobs::cli {
 
-/// How much of what was recognised is told.
+/// Says how much of what was recognised is printed.
 struct RecogniseReport {
-  std::size_t top = 5;    ///< models of each ranking
-  bool has_files = true;  ///< that stay
+  std::size_t top = 5;    ///< Number of models of each ranking.
+  bool has_files = true;  ///< The files stay, so that their paths are of use.
 };
 
-/// For each scene its objects with their poses, then the first of the ranking; failures; totals.
-/// outcomes[i] belongs to plan[i].
-void print_recognised(const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,
-                      const RunSummary& summary, const SearchedLibrary& library,
+/// Prints on stdout for each scene its objects with their poses and the first models of the ranking;
+/// then failures and totals.
+void print_recognised(const RunResult& result, const SearchedLibrary& library,
                       const RecogniseReport& report);
 
-/// The same as one JSON document, with the content of each file.
-void print_recognised_json(const std::vector<PlannedJob>& plan,
-                           const std::vector<JobOutcome>& outcomes, const RunSummary& summary,
-                           const SearchedLibrary& library, const RecogniseReport& report);
+/// Prints the same as one JSON document, with the content of each file.
+void print_recognised_json(const RunResult& result, const SearchedLibrary& library,
+                           const RecogniseReport& report);
 
 }  // namespace semigeo::jobs::cli

@@ -7,7 +7,8 @@
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/run_plan.hpp"
 #include "jobs/cli/surface_options.hpp"
-#include "jobs/plan/library_plan.hpp"
+#include "jobs/kinds/library_plan.hpp"
+#include "jobs/kinds/surface_plan.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {
@@ -16,7 +17,8 @@ namespace fs = std::filesystem;
 
 /// What the command line says.
 struct RunOptions {
-  RunConfig config;
+  std::vector<fs::path> inputs;  ///< Scans, and folders of them.
+  fs::path archive;
   SurfaceOptions surface;
   ExecutionOptions execution;
   bool library = false;  ///< A library of all datasets of the archive is made as well.
@@ -33,13 +35,14 @@ void prepare_archive(const fs::path& archive, const std::string& effective_confi
 
 std::vector<PlannedJob> make_plan(const RunOptions& options, const std::vector<FoundScan>& scans,
                                   DigestCache& cache) {
-  const fs::path& archive = options.config.archive;
-  std::vector<PlannedJob> plan = plan_jobs(options.config, scans, cache);
+  const fs::path& archive = options.archive;
+  const int threads = options.execution.limits.threads;
+  std::vector<PlannedJob> plan =
+      plan_surfaces(archive, scans, options.surface.parameters, cache, threads);
   if (options.library)
-    plan_library(plan, models_of(archive, plan, cache), place_of_archive(archive),
-                 options.config.jobs.recognition);
+    plan_library(plan, models_of(archive, plan, cache), place_of_archive(archive), {});
   if (options.execution.verify) {
-    verify_plan(plan, options.config.threads);
+    verify_surfaces(plan, threads);
     verify_library_plan(plan);
   }
   return plan;
@@ -48,7 +51,7 @@ std::vector<PlannedJob> make_plan(const RunOptions& options, const std::vector<F
 int find_and_run(const RunOptions& options, const std::string& effective_config) {
   std::vector<FoundScan> scans;
   try {
-    scans = find_scans(options.config.inputs, options.config.archive);
+    scans = find_scans(options.inputs, options.archive);
   } catch (const io::Error& e) {
     std::fprintf(stderr, "semigeo: %s\n", e.what());
     return kUsage;
@@ -57,23 +60,23 @@ int find_and_run(const RunOptions& options, const std::string& effective_config)
     std::fprintf(stderr, "semigeo: no .ply, .obj, .off or .stl file (or .gz of one) was found\n");
     return kUsage;
   }
-  return run_plan(options.execution, options.config,
-                  {.plan = [&](DigestCache& cache) { return make_plan(options, scans, cache); },
+  return run_plan(options.execution,
+                  {.home = options.archive,
+                   .plan = [&](DigestCache& cache) { return make_plan(options, scans, cache); },
                    .prepare =
                        [&](const std::vector<PlannedJob>& plan) {
-                         prepare_archive(options.config.archive, effective_config, plan);
+                         prepare_archive(options.archive, effective_config, plan);
                        }});
 }
 
 void add_options(CLI::App* command, RunOptions& options) {
-  RunConfig& config = options.config;
   command
-      ->add_option("scans", config.inputs,
+      ->add_option("scans", options.inputs,
                    "Scans (.ply .obj .off .stl, each also .gz) and folders of them")
       ->default_str("")
       ->required()
       ->configurable(false);
-  command->add_option("-o,--output", config.archive, "The archive: a folder, made if need be")
+  command->add_option("-o,--output", options.archive, "The archive: a folder, made if need be")
       ->required()
       ->configurable(false);
   add_surface_options(*command, options.surface);
@@ -87,8 +90,6 @@ void add_options(CLI::App* command, RunOptions& options) {
 void settle(RunOptions& options) {
   settle(options.execution);
   settle(options.surface);
-  options.config.jobs.surface = options.surface.parameters;
-  options.config.threads = options.execution.limits.threads;
 }
 
 }  // namespace

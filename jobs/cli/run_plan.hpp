@@ -1,30 +1,31 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <vector>
 
 #include "jobs/archive/digest_cache.hpp"
 #include "jobs/cli/execution_options.hpp"
-#include "jobs/cli/run_report.hpp"
 #include "jobs/plan/plan.hpp"
+#include "jobs/run/run.hpp"
 
 namespace semigeo::jobs::cli {
 
-/// Where a plan comes from. Its folder, RunConfig::archive, has the lock, the journal and the logs.
+/// Where a plan comes from, and the folder that has the lock, the journal and the logs of its run.
 struct PlanSource {
-  /// Reads only. If something is to be run, it is called when the folder is ours.
+  std::filesystem::path home;
+  /// Makes the plan. It reads only. If something is to be run, it is called when the folder belongs
+  /// to the run.
   std::function<std::vector<PlannedJob>(DigestCache&)> plan;
-  /// Before jobs run, in a folder that is ours and can be written.
+  /// Prepares a folder that belongs to the run and can be written, before jobs run.
   std::function<void(const std::vector<PlannedJob>&)> prepare = {};
-  bool is_archive = true;  ///< has scans: what was learned of them is kept
-  bool is_kept = true;     ///< else nobody else knows the folder: no lock, no journal
-  /// Instead of the report of a run. outcomes[i] belongs to plan[i].
-  std::function<void(const std::vector<PlannedJob>&, const std::vector<JobOutcome>& outcomes,
-                     const RunSummary&)>
-      print = {};
+  bool is_archive = true;  ///< The folder has scans: what was learned of them is kept.
+  bool is_kept = true;     ///< Others know the folder; if not, there is neither lock nor journal.
+  /// Prints the results instead of the report of a run.
+  std::function<void(const RunResult&)> print = {};
 };
 
-/// Makes the plan and runs it, or says what would run; prints results; returns an exit code.
-int run_plan(const ExecutionOptions& options, const RunConfig& config, const PlanSource& source);
+/// Makes the plan and runs it, or says what would run. Prints results and returns an exit code.
+int run_plan(const ExecutionOptions& options, const PlanSource& source);
 
 }  // namespace semigeo::jobs::cli

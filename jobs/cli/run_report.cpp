@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "jobs/cli/json_output.hpp"
-#include "jobs/plan/library_plan.hpp"
+#include "jobs/plan/job_kind.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {
@@ -27,105 +27,46 @@ nlohmann::json reason_json(const Reason& reason) {
   return document;
 }
 
-/// Of a surface job what was done to a scan; of another its kind.
+/// Names the job; jobs that do not stand for a scan also name their kind.
 nlohmann::json job_json(const PlannedJob& planned) {
-  nlohmann::json scan = {{"name", planned.job.name},
-                         {"input", planned.job.input.string()},
-                         {"output", planned.job.output.string()}};
-  for (const Reason& reason : planned.reasons) scan["reasons"].push_back(reason_json(reason));
-  if (planned.job.kind != JobKind::kSurface) scan["kind"] = name_of(planned.job.kind);
-  return scan;
+  nlohmann::json entry = {{"name", planned.job.name},
+                          {"input", planned.job.input.string()},
+                          {"output", planned.job.output.string()}};
+  for (const Reason& reason : planned.reasons) entry["reasons"].push_back(reason_json(reason));
+  const JobWords& words = planned.job.kind->words();
+  if (!words.stands_for_scan) entry["kind"] = words.kind;
+  return entry;
 }
 
-std::string in_words(const PreparationResult& preparation) {
-  const kernels::HoleCounts& holes = preparation.holes;
-  std::string text;
-  if (holes.loops > 0) {
-    text = std::to_string(holes.filled) + " of " + std::to_string(holes.loops) + " holes filled";
-    std::string left;
-    const auto add = [&](std::int64_t count, const char* reason) {
-      if (count > 0) left += (left.empty() ? "" : ", ") + std::to_string(count) + " " + reason;
-    };
-    add(holes.outer, "outer");
-    add(holes.too_long, "too long");
-    add(holes.unsplittable, "without a valid split");
-    if (!left.empty()) text += " (left: " + left + ")";
-  }
-  if (preparation.removed_vertices > 0) {
-    char distance[64];
-    std::snprintf(distance, sizeof distance, "%.3g", preparation.distance.maximum);
-    text += (text.empty() ? "" : ", ") + std::to_string(preparation.removed_vertices) +
-            " vertices removed, at most " + distance + " from what is left";
-  }
-  return text.empty() ? "nothing to do" : text;
-}
-
-/// What became of a surface on its way through the levels, if it is worth a word.
-std::string in_words(const SurfaceJobResult& result) {
-  std::string text;
-  const auto add = [&text](std::int64_t count, const char* one, const char* more) {
-    if (count == 0) return;
-    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + (count == 1 ? one : more);
-  };
-  add(result.remeshed.torn, "neck torn", "necks torn");
-  add(result.remeshed.dropped_parts, "part lost", "parts lost");
-  if (result.vanished)
-    text +=
-        (text.empty() ? "" : "; ") + std::string("too thin for so many levels: it has vanished");
-  return text;
-}
-
-const SurfaceJobResult* surface_result(const JobOutcome& outcome) {
-  return std::get_if<SurfaceJobResult>(&outcome.result);
-}
-
-/// The lists of a document: `jobs` is there only if there are jobs of other kinds.
+/// Adds to the lists of a document. `jobs` is there only if there are jobs that stand for no scan.
 void add_to(nlohmann::json& document, const PlannedJob& planned, nlohmann::json&& entry) {
-  document[planned.job.kind == JobKind::kSurface ? "scans" : "jobs"].push_back(std::move(entry));
+  const bool stands_for_scan = planned.job.kind->words().stands_for_scan;
+  document[stands_for_scan ? "scans" : "jobs"].push_back(std::move(entry));
 }
 
-void add_result(nlohmann::json& entry, const SurfaceJobResult& result,
-                const SurfaceParameters& parameters) {
-  entry["format"] = result.format;
-  entry["vertices"] = result.vertices;
-  entry["triangles"] = result.triangles;
-  entry["parts"] = result.parts;
-  entry["levels"] = result.levels;
-  entry["repairs"] = json_of(result.repairs);
-  entry["preparation"] = json_of(result.preparation, parameters.preparation);
-  entry["vanished"] = result.vanished;
-  entry["remeshing"] = json_of(result.remeshed);
-}
-
-bool is_made(JobState state) {
-  return state == JobState::kDone || state == JobState::kUpToDate;
-}
-
-nlohmann::json library_json(const Job& library, JobState state) {
-  const auto missing = missing_models(library);
-  return {{"output", library.output.string()},
-          {"state", name_of(state)},
-          {"models", library.models.size() - missing.size()},
-          {"missing", missing}};
-}
-
-void print_library(const Job& library, JobState state) {
-  const auto missing = missing_models(library);
-  if (is_made(state)) {
-    std::printf("library: %s: %zu models%s", library.output.c_str(),
-                library.models.size() - missing.size(),
-                state == JobState::kUpToDate ? ", up to date" : "");
-  } else {
-    std::printf("library: %s: %s", library.output.c_str(), std::string(name_of(state)).c_str());
+/// Prints what the jobs of one kind tell, heading by heading.
+void print_reports(const RunResult& result, const JobKind& kind) {
+  std::vector<std::pair<std::size_t, JobReport>> reports;
+  for (std::size_t i = 0; i < result.plan.size(); ++i) {
+    const Job& job = result.plan[i].job;
+    if (job.kind != &kind || !result.outcomes[i].result.has_value()) continue;
+    reports.emplace_back(i, kind.report(job, result.outcomes[i].result));
   }
-  for (std::size_t i = 0; is_made(state) && i < missing.size(); ++i)
-    std::printf("%s%s", i == 0 ? "; missing: " : ", ", missing[i].c_str());
-  std::printf("\n");
+  for (const std::string& heading : kind.words().headings)
+    for (const auto& [i, report] : reports)
+      for (const auto& [name, text] : report.lines)
+        if (name == heading)
+          std::printf("%s: %s: %s\n", heading.c_str(), result.plan[i].job.name.c_str(),
+                      text.c_str());
 }
 
-const char* what_of(const PlannedJob& planned) {
-  if (planned.job.kind == JobKind::kRecognise) return "scenes";
-  return planned.job.kind == JobKind::kSurface ? "scans" : "jobs of a library";
+/// Returns the kinds of a plan, in the order in which they appear.
+std::vector<const JobKind*> kinds_of(const std::vector<PlannedJob>& plan) {
+  std::vector<const JobKind*> kinds;
+  for (const PlannedJob& planned : plan)
+    if (std::ranges::find(kinds, planned.job.kind) == kinds.end())
+      kinds.push_back(planned.job.kind);
+  return kinds;
 }
 
 /// "5 scans: 3 would run, 2 up to date".
@@ -134,7 +75,7 @@ void print_counts(const std::vector<const PlannedJob*>& plan) {
   const auto unreadable =
       std::ranges::count_if(plan, [](const PlannedJob* planned) { return !is_readable(*planned); });
   const auto all = static_cast<long long>(plan.size());
-  std::printf("%lld %s: %lld would run, %lld up to date", all, what_of(*plan.front()),
+  std::printf("%lld %s: %lld would run, %lld up to date", all, plan.front()->job.kind->words().plural.c_str(),
               all - up_to_date - unreadable, static_cast<long long>(up_to_date));
   if (unreadable > 0) std::printf(", %lld cannot be read", static_cast<long long>(unreadable));
   std::printf("\n");
@@ -158,10 +99,10 @@ void print_plan(const std::vector<PlannedJob>& plan, bool json, bool explain) {
   std::vector<const PlannedJob*> scans;
   std::vector<const PlannedJob*> others;
   for (const PlannedJob& p : plan) {
-    const bool of_scan = p.job.kind == JobKind::kSurface;
+    const bool of_scan = p.job.kind->words().stands_for_scan;
     (of_scan ? scans : others).push_back(&p);
     if (p.up_to_date) continue;
-    std::printf("%s: %s\n", (of_scan ? p.job.name : job_id(p.job)).c_str(),
+    std::printf("%s: %s\n", shown_name(p.job).c_str(),
                 p.error.empty() ? ("would run: " + in_short(p.reasons)).c_str() : p.error.c_str());
     if (!explain) continue;
     for (const Reason& reason : p.reasons) std::printf("    %s\n", in_words(reason).c_str());
@@ -170,8 +111,8 @@ void print_plan(const std::vector<PlannedJob>& plan, bool json, bool explain) {
   if (!others.empty()) print_counts(others);
 }
 
-void print_json(const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,
-                const SurfaceParameters& parameters, const RunSummary& summary) {
+void print_json(const RunResult& result) {
+  const RunSummary& summary = result.summary;
   nlohmann::json document = {{"scans", nlohmann::json::array()},
                              {"done", summary.done},
                              {"up_to_date", summary.up_to_date},
@@ -183,51 +124,33 @@ void print_json(const std::vector<PlannedJob>& plan, const std::vector<JobOutcom
                              {"wall_seconds", summary.wall_seconds},
                              {"cpu_seconds", summary.cpu_seconds},
                              {"peak_memory_bytes", summary.peak_bytes}};
-  for (std::size_t i = 0; i < plan.size(); ++i) {
-    auto entry = job_json(plan[i]);
-    const JobOutcome& outcome = outcomes[i];
+  for (std::size_t i = 0; i < result.plan.size(); ++i) {
+    const Job& job = result.plan[i].job;
+    const JobOutcome& outcome = result.outcomes[i];
+    auto entry = job_json(result.plan[i]);
     entry["state"] = name_of(outcome.state);
     entry["seconds"] = outcome.seconds;
     if (!outcome.error.empty()) entry["error"] = outcome.error;
-    if (const auto* result = surface_result(outcome)) add_result(entry, *result, parameters);
-    if (plan[i].job.kind == JobKind::kLibrary)
-      document["library"] = library_json(plan[i].job, outcome.state);
-    add_to(document, plan[i], std::move(entry));
+    if (outcome.result.has_value())
+      for (auto& [name, value] : job.kind->report(job, outcome.result).fields)
+        entry[name] = std::move(value);
+    if (auto told = job.kind->summary(job, outcome.state))
+      for (auto& [name, value] : told->fields) document[name] = std::move(value);
+    add_to(document, result.plan[i], std::move(entry));
   }
   print_document(document);
 }
 
-void print_text(const std::vector<PlannedJob>& plan, const std::vector<JobOutcome>& outcomes,
-                const RunSummary& summary) {
-  for (std::size_t i = 0; i < plan.size(); ++i) {
-    const auto* result = surface_result(outcomes[i]);
-    if (result == nullptr || result->repairs == kernels::SurfaceRepairs{}) continue;
-    std::string changes;
-    const nlohmann::json repairs = json_of(result->repairs);
-    for (const auto& [name, count] : repairs.items()) {
-      if (count.get<std::int64_t>() == 0) continue;
-      std::string words = name;
-      std::replace(words.begin(), words.end(), '_', ' ');
-      changes += (changes.empty() ? "" : ", ") + count.dump() + " " + words;
-    }
-    std::printf("repaired: %s: %s\n", plan[i].job.name.c_str(), changes.c_str());
-  }
-  for (std::size_t i = 0; i < plan.size(); ++i) {
-    const auto* result = surface_result(outcomes[i]);
-    if (result == nullptr || result->preparation == PreparationResult{}) continue;
-    std::printf("prepared: %s: %s\n", plan[i].job.name.c_str(),
-                in_words(result->preparation).c_str());
-  }
-  for (std::size_t i = 0; i < plan.size(); ++i) {
-    const auto* result = surface_result(outcomes[i]);
-    if (result == nullptr) continue;
-    const std::string words = in_words(*result);
-    if (!words.empty()) std::printf("evolved: %s: %s\n", plan[i].job.name.c_str(), words.c_str());
-  }
-  for (const JobOutcome& outcome : outcomes)
+void print_text(const RunResult& result) {
+  for (const JobKind* kind : kinds_of(result.plan)) print_reports(result, *kind);
+  for (const JobOutcome& outcome : result.outcomes)
     if (outcome.state == JobState::kFailed) std::printf("failed: %s\n", outcome.error.c_str());
-  for (std::size_t i = 0; i < plan.size(); ++i)
-    if (plan[i].job.kind == JobKind::kLibrary) print_library(plan[i].job, outcomes[i].state);
+  for (std::size_t i = 0; i < result.plan.size(); ++i) {
+    const Job& job = result.plan[i].job;
+    if (const auto told = job.kind->summary(job, result.outcomes[i].state))
+      std::printf("%s\n", told->text.c_str());
+  }
+  const RunSummary& summary = result.summary;
   const std::string rate =
       summary.vertex_levels > 0 ? short_number(summary.rate()) + " vertex levels/s; " : "";
   const std::string not_run =

@@ -1,177 +1,48 @@
 #include "jobs/plan/plan.hpp"
 
-#include <algorithm>
-#include <fstream>
-#include <iterator>
-#include <utility>
-
-#include "io/dataset/dataset.hpp"
-#include "io/dataset/xdmf.hpp"
-#include "io/files/error.hpp"
-#include "io/files/file_digest.hpp"
-#include "io/files/utf8.hpp"
-#include "jobs/archive/sources.hpp"
-#include "jobs/archive/verification.hpp"
-#include "jobs/plan/job_key.hpp"
+#include "jobs/plan/job_kind.hpp"
 
 namespace semigeo::jobs {
-namespace {
 
 namespace fs = std::filesystem;
 using Kind = Reason::Kind;
 
-/// What differs between what a dataset was made of and what the job would make it of.
-std::vector<Reason> differences(const io::DatasetOrigin& origin, const Job& job,
-                                const std::string& parameters_json) {
-  std::vector<Reason> reasons;
-  if (origin.input_xxh3 != job.input_xxh3)
-    reasons.push_back({.kind = Kind::kScan, .before = origin.input_xxh3, .now = job.input_xxh3});
-  std::ranges::move(parameter_differences(origin.parameters_json, parameters_json),
-                    std::back_inserter(reasons));
-  // What this program would have called the same thing says whether it would have made the same.
-  if (origin.job_key != surface_key(job.name, origin.input_xxh3, origin.parameters_json))
-    reasons.push_back({.kind = Kind::kProgram, .before = origin.creator_version});
-  return reasons;
-}
-
-std::vector<Reason> reasons_of_dataset(const Job& job, const std::string& parameters_json) {
-  try {
-    return differences(io::read_origin(job.output), job, parameters_json);
-  } catch (const io::Error& error) {
-    return {{.kind = Kind::kUnusableDataset, .now = error.problem()}};
-  }
-}
-
-/// Compares the dataset in the archive, if there is one, with what the job would make.
-void decide(PlannedJob& planned, const std::string& parameters_json, DigestCache& cache) {
-  const Job& job = planned.job;
-  std::error_code ignored;
-  if (!fs::exists(job.output, ignored)) {
-    planned.reasons = {{.kind = Kind::kNoDataset}};
-  } else if (const auto keys = cache.dataset_keys(job.name); !keys || keys->job_key != job.key) {
-    planned.reasons = reasons_of_dataset(job, parameters_json);
-  } else if (!fs::exists(io::sidecar_of(job.output), ignored)) {
-    planned.reasons = {{.kind = Kind::kNoSidecar}};
-    planned.sidecar_only = true;
-  } else {
-    planned.up_to_date = true;
-  }
-}
-
-/// Of what a job's output is made, for reasons.
-const char* inputs_of(JobKind kind) {
-  switch (kind) {
-    case JobKind::kSurface:
-      return "the scan";
-    case JobKind::kTriplets:
-      return "the dataset";
-    case JobKind::kPartition:
-    case JobKind::kLibrary:
-      return "the models";
-    case JobKind::kRecognise:
-      break;
-  }
-  return "the scene, the library";
-}
-
-std::string text_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-/// Whether the sidecar says what it must, of a dataset that is whole.
-bool sidecar_is_right(const fs::path& dataset) {
-  return text_of(io::sidecar_of(dataset)) == io::sidecar_text(dataset);
-}
-
-}  // namespace
-
 std::string_view state_of(const PlannedJob& planned) {
-  if (!planned.error.empty()) return "unreadable";
+  if (!is_readable(planned)) return "unreadable";
   return planned.up_to_date ? "up to date" : "would run";
 }
 
-std::vector<PlannedJob> plan_jobs(const RunConfig& config) {
-  DigestCache nothing(config.archive);
-  return plan_jobs(config, find_scans(config.inputs, config.archive), nothing);
+std::uintmax_t bytes_to_read(const PlannedJob& planned) {
+  return planned.up_to_date ? 0 : planned.job.kind->bytes_to_read(planned.job);
 }
 
-std::vector<PlannedJob> plan_jobs(const RunConfig& config, const std::vector<FoundScan>& scans,
-                                  DigestCache& cache) {
-  std::vector<PlannedJob> plan(scans.size());
-  std::vector<Unnamed> unnamed;
-  std::vector<ScanDigest> digests = cache.scan_digests(scans, config.threads);
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    PlannedJob& planned = plan[i];
-    planned.job.input = scans[i].input;
-    planned.job.input_name = io::as_utf8(scans[i].relative);
-    planned.job.input_xxh3 = std::move(digests[i].xxh3);
-    planned.scan = scans[i].file;
-    planned.error = std::move(digests[i].error);
-    unnamed.push_back({scans[i].name, scans[i].file, planned.job.input_xxh3});
-  }
-  const auto names = choose_names(unnamed, Sources::read(config.archive),
-                                  [&](const std::string& name, const std::string& xxh3) {
-                                    const auto keys = cache.dataset_keys(name);
-                                    return keys && keys->input_xxh3 == xxh3;
-                                  });
-  const std::string parameters_json = to_json(config.jobs.surface);
-  for (std::size_t i = 0; i < plan.size(); ++i) {
-    Job& job = plan[i].job;
-    job.name = names[i];
-    job.output = dataset_path(config.archive, job.name);
-    job.key = surface_key(job.name, job.input_xxh3, parameters_json);
-    if (plan[i].error.empty()) decide(plan[i], parameters_json, cache);
-  }
-  return plan;
-}
-
-void verify_plan(std::vector<PlannedJob>& plan, int at_once) {
-  std::vector<PlannedJob*> jobs;
-  std::vector<fs::path> datasets;
-  for (PlannedJob& planned : plan) {
-    if (planned.job.kind != JobKind::kSurface) continue;
-    if (!planned.up_to_date && !planned.sidecar_only) continue;
-    jobs.push_back(&planned);
-    datasets.push_back(planned.job.output);
-  }
-  const std::vector<std::string> problems = verify_datasets(datasets, at_once);
-  for (std::size_t i = 0; i < jobs.size(); ++i) {
-    PlannedJob& planned = *jobs[i];
-    if (!problems[i].empty()) {
-      planned.reasons = {{.kind = Kind::kDamagedArrays, .now = problems[i]}};
-      planned.sidecar_only = false;
-    } else if (planned.up_to_date && !sidecar_is_right(datasets[i])) {
-      planned.reasons = {{.kind = Kind::kDamagedSidecar}};
-      planned.sidecar_only = true;
-    } else {
-      continue;
-    }
-    planned.up_to_date = false;
-  }
-}
-
-void judge_output(PlannedJob& planned, std::string (*key_of)(const Job&)) {
+void judge_output(PlannedJob& planned, KeyCheck check) {
   const Job& job = planned.job;
-  const std::string name(output_name_of(job.kind));
+  const JobWords& words = job.kind->words();
   std::error_code ignored;
   if (!fs::exists(job.output, ignored)) {
-    planned.reasons = {{.kind = Kind::kNoOutput, .before = name}};
-  } else if (const std::string key = key_of(job); key.empty()) {
-    planned.reasons = {{.kind = Kind::kUnusableOutput, .before = name}};
+    planned.reasons = {{.kind = Kind::kNoOutput, .before = words.output}};
+  } else if (const std::string key = output_key(job, check); key.empty()) {
+    planned.reasons = {{.kind = Kind::kUnusableOutput, .before = words.output}};
   } else if (key != job.key) {
-    planned.reasons = {{.kind = Kind::kInputs, .before = name, .now = inputs_of(job.kind)}};
+    planned.reasons = {{.kind = Kind::kInputs, .before = words.output, .now = words.inputs}};
   } else {
     planned.up_to_date = true;
   }
 }
 
-void record_sources(const fs::path& archive, const std::vector<PlannedJob>& plan) {
-  Sources sources = Sources::read(archive);
+void plan_again(PlannedJob& planned, const std::string& problem) {
+  planned.up_to_date = false;
+  planned.reasons = {{.kind = Kind::kDamagedOutput,
+                      .before = planned.job.kind->words().output,
+                      .now = problem}};
+}
+
+void remove_damaged_outputs(const std::vector<PlannedJob>& plan) {
+  std::error_code ignored;
   for (const PlannedJob& planned : plan)
-    if (planned.job.kind == JobKind::kSurface && planned.error.empty())
-      sources.claim(planned.job.name, planned.scan);
-  sources.write(archive);
+    if (!planned.reasons.empty() && planned.reasons.front().kind == Kind::kDamagedOutput)
+      fs::remove_all(planned.job.output, ignored);
 }
 
 }  // namespace semigeo::jobs

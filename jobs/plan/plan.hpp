@@ -1,14 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "jobs/archive/digest_cache.hpp"
-#include "jobs/archive/find_scans.hpp"
-#include "jobs/plan/config.hpp"
 #include "jobs/plan/job.hpp"
 #include "jobs/plan/reasons.hpp"
 
@@ -17,35 +15,34 @@ namespace semigeo::jobs {
 /// A job and what is known of it before anything runs.
 struct PlannedJob {
   Job job;
-  std::vector<std::size_t> after = {};  ///< places in the plan, before its own: of jobs that make
-                                        ///< what it reads. When they have ended, it may begin
+  std::vector<std::size_t> after = {};  ///< Places in the plan, before this one, of the jobs that
+                                        ///< must have ended before this job may begin.
   bool up_to_date = false;
-  bool inputs_are_there = false;  ///< no look at them again when it begins: its key stands
-  bool sidecar_only = false;      ///< it runs, but only to make the dataset's .xdmf again
-  std::vector<Reason> reasons;    ///< why it runs; none if it does not
-  std::string error;              ///< why it cannot even be planned (the scan is unreadable)
-  std::filesystem::path scan;     ///< surface: absolute path of the scan, for Sources
+  bool inputs_are_there = false;  ///< The key stands: inputs are not looked at again.
+  std::vector<Reason> reasons;    ///< Why the job runs; empty if it does not.
+  std::string error;              ///< Why the job cannot even be planned.
+  std::filesystem::path scan;     ///< Absolute path of the scan that the job reads, if any.
 };
 
-/// "up to date", "would run" or "unreadable".
+/// Returns whether the inputs of the job could be looked at.
+inline bool is_readable(const PlannedJob& planned) {
+  return planned.error.empty();
+}
+
+/// Returns "up to date", "would run" or "unreadable".
 std::string_view state_of(const PlannedJob& planned);
 
-/// Surface jobs: hashes the scans and compares each key with that of the dataset in the archive.
-/// Reads only, and of what the cache knows not even that.
-std::vector<PlannedJob> plan_jobs(const RunConfig& config, const std::vector<FoundScan>& scans,
-                                  DigestCache& cache);
-/// Of all scans that the configuration names, without the help of a cache.
-std::vector<PlannedJob> plan_jobs(const RunConfig& config);
+/// Returns the bytes of scans that the job is going to read.
+std::uintmax_t bytes_to_read(const PlannedJob& planned);
 
-/// Reads every array of the datasets that count as up to date, as verify_datasets does, and plans
-/// again what is damaged. Of surface jobs; other kinds are passed over.
-void verify_plan(std::vector<PlannedJob>& plan, int at_once);
+/// Compares the key of the output that is there with the job's, and sets `up_to_date` or the reason
+/// why the job runs.
+void judge_output(PlannedJob& planned, KeyCheck check = KeyCheck::kWhole);
 
-/// Compares what is there, by its key, with what the job would make. Of all kinds but surface jobs.
-void judge_output(PlannedJob& planned, std::string (*key_of)(const Job&) = output_key);
+/// Plans a job again whose output is damaged. `problem` says what is wrong.
+void plan_again(PlannedJob& planned, const std::string& problem);
 
-/// Tells the archive, which must exist, of which scans its datasets are made. Do it before they
-/// are.
-void record_sources(const std::filesystem::path& archive, const std::vector<PlannedJob>& plan);
+/// Removes, before jobs run, damaged outputs that look up to date to readers of headers.
+void remove_damaged_outputs(const std::vector<PlannedJob>& plan);
 
 }  // namespace semigeo::jobs

@@ -1,49 +1,41 @@
 #include "jobs/plan/plan_graph.hpp"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "io/files/utf8.hpp"
+#include "jobs/plan/job_kind.hpp"
 
 namespace semigeo::jobs {
 namespace {
 
 std::string output_state(const PlannedJob& planned) {
   using Kind = Reason::Kind;
-  if (!planned.error.empty()) return "unknown";
-  if (planned.up_to_date || planned.sidecar_only) return "up to date";
-  const Kind first = planned.reasons.front().kind;
-  return first == Kind::kNoDataset || first == Kind::kNoOutput ? "missing" : "out of date";
+  if (!is_readable(planned)) return "unknown";
+  if (planned.up_to_date) return "up to date";
+  switch (planned.reasons.front().kind) {
+    case Kind::kNoDataset:
+    case Kind::kNoOutput:
+      return "missing";
+    case Kind::kNoSidecar:
+    case Kind::kDamagedSidecar:
+      return "up to date";
+    default:
+      return "out of date";
+  }
 }
 
 std::string output_id(const Job& job) {
-  return std::string(output_name_of(job.kind)) + ' ' + job.output.string();
+  return job.kind->words().output + ' ' + job.output.string();
 }
 
-bool is_job(const GraphNode& node) {
-  return std::ranges::any_of(kJobKinds, [&](JobKind kind) { return node.kind == name_of(kind); });
-}
-
-/// The file that a job reads but none makes: of surface jobs the scan, of triplets jobs a dataset,
-/// of recognitions the scene.
-GraphNode input_of(const PlannedJob& planned) {
-  const JobKind of = planned.job.kind;
-  const std::string kind = of == JobKind::kSurface    ? "scan"
-                           : of == JobKind::kTriplets ? "dataset"
-                                                      : "scene";
-  const std::string name =
-      of == JobKind::kTriplets ? planned.job.input.string() : planned.scan.string();
-  return {.id = kind + ' ' + name,
-          .kind = kind,
+/// A file that is an input of the whole plan.
+GraphNode node_of(const ExternalFile& file) {
+  const std::string name = file.path.string();
+  return {.id = file.kind + ' ' + name,
+          .kind = file.kind,
           .name = name,
-          .state = planned.error.empty() ? "readable" : "unreadable"};
-}
-
-GraphNode library_of(const Job& recognise) {
-  const std::string kind(output_name_of(JobKind::kLibrary));
-  const std::string name = recognise.library.string();
-  return {.id = kind + ' ' + name, .kind = kind, .name = name, .state = "readable"};
+          .state = file.is_readable ? "readable" : "unreadable"};
 }
 
 /// Between quotes; names may hold anything.
@@ -64,28 +56,24 @@ std::string quoted(const std::string& text) {
 
 std::vector<GraphNode> graph_of(const std::vector<PlannedJob>& plan) {
   std::vector<GraphNode> graph;
-  std::set<std::string> libraries;  // one node for all scenes
+  std::set<std::string> files;  // a library has one node for all scenes
   for (const PlannedJob& planned : plan) {
     const Job& job = planned.job;
     GraphNode node{.id = job_id(job),
-                   .kind = std::string(name_of(job.kind)),
+                   .kind = job.kind->words().kind,
                    .name = job.name,
-                   .state = std::string(state_of(planned))};
+                   .state = std::string(state_of(planned)),
+                   .is_job = true};
     for (const std::size_t before : planned.after)
       node.dependencies.push_back(output_id(plan[before].job));
-    const bool of_many = job.kind == JobKind::kPartition || job.kind == JobKind::kLibrary;
-    if (!of_many && planned.after.empty()) {
-      graph.push_back(input_of(planned));
-      node.dependencies.push_back(graph.back().id);
-    }
-    if (job.kind == JobKind::kRecognise) {
-      const GraphNode library = library_of(job);
-      node.dependencies.push_back(library.id);
-      if (libraries.insert(library.id).second) graph.push_back(library);
+    for (const ExternalFile& file : job.kind->external_files(planned)) {
+      const GraphNode input = node_of(file);
+      node.dependencies.push_back(input.id);
+      if (files.insert(input.id).second) graph.push_back(input);
     }
     graph.push_back(node);
     graph.push_back({.id = output_id(job),
-                     .kind = std::string(output_name_of(job.kind)),
+                     .kind = job.kind->words().output,
                      .name = job.output.string(),
                      .state = output_state(planned),
                      .dependencies = {node.id}});
@@ -108,9 +96,9 @@ std::string to_json(const std::vector<GraphNode>& graph) {
 std::string to_dot(const std::vector<GraphNode>& graph) {
   std::string text = "digraph semigeo {\n  rankdir=LR;\n";
   for (const GraphNode& node : graph) {
-    text += "  " + quoted(node.id) + " [shape=" + (is_job(node) ? "box" : "note") +
+    text += "  " + quoted(node.id) + " [shape=" + (node.is_job ? "box" : "note") +
             ", style=" + (node.state == "up to date" ? "dashed" : "solid") +
-            ", label=" + quoted((is_job(node) ? node.id : node.name) + "\n" + node.state) + "];\n";
+            ", label=" + quoted((node.is_job ? node.id : node.name) + "\n" + node.state) + "];\n";
   }
   for (const GraphNode& node : graph)
     for (const std::string& dependency : node.dependencies)

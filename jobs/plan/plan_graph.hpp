@@ -7,25 +7,27 @@
 
 namespace semigeo::jobs {
 
-/// A file, or a job that makes one of others.
+/// A node of the graph: a file, or a job that makes a file from others.
 struct GraphNode {
-  std::string id;     ///< of a job its name in the journal; of a file its kind and path
-  std::string kind;   ///< of a job "surface", "triplets", ...; of a file "scan", "dataset", ...
-  std::string name;   ///< path of a file, name of a job
+  std::string id;     ///< Identifier of the job, or kind and path of the file.
+  std::string kind;   ///< "surface", "triplets", ... for jobs; "scan", "dataset", ... for files.
+  std::string name;   ///< Name of the job, or path of the file.
   std::string state;  ///< "up to date", "would run", "unreadable", ...
-  std::vector<std::string> dependencies = {};  ///< identifiers
+  std::vector<std::string> dependencies = {};  ///< Identifiers of what the node is made from.
+  bool is_job = false;
   friend bool operator==(const GraphNode&, const GraphNode&) = default;
 };
 
-/// Every job that is planned and the file that it makes, in the order of the plan; scans, and
-/// datasets that no job makes, before the jobs that read them. Dependencies come before what
-/// depends on them.
+/// Returns every job that is planned and the file that it makes, in the order of the plan. Files
+/// that no job makes stand before the first job that reads them, so that dependencies come before
+/// what depends on them.
 std::vector<GraphNode> graph_of(const std::vector<PlannedJob>& plan);
 
-/// {"nodes": [{"id", "kind", "name", "state", "dependencies"}]}.
+/// Returns the graph as JSON: {"nodes": [{"id", "kind", "name", "state", "dependencies"}]}.
 std::string to_json(const std::vector<GraphNode>& graph);
 
-/// For Graphviz: files are notes, jobs boxes, what is up to date is dashed.
+/// Returns the graph in the language of Graphviz: files are notes, jobs are boxes, and what is up to
+/// date has a dashed outline.
 std::string to_dot(const std::vector<GraphNode>& graph);
 
 }  // namespace semigeo::jobs

@@ -2,42 +2,41 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 
-#include "jobs/plan/config.hpp"
-#include "jobs/plan/job.hpp"
-#include "jobs/run/job_result.hpp"
+#include "jobs/plan/job_kind.hpp"
 
 namespace semigeo::jobs {
 
-// What a run and the processes that do its jobs say to each other: one line of JSON each.
+// What a run and the processes that do its jobs say to each other: each message is a line of JSON.
 
-/// A job, to be done by another process.
+/// A job that another process is to do.
 struct JobRequest {
   Job job;
-  JobParameters parameters;
-  bool sidecar_only = false;       ///< make the dataset's .xdmf again, if that is possible
-  int threads = 1;                 ///< at once
-  std::uint64_t memory_bytes = 0;  ///< address space; 0: no limit
-  std::filesystem::path log;       ///< takes what the job prints; appended to
+  int threads = 1;                        ///< Threads that the job may use at once.
+  std::uint64_t memory_bytes = 0;         ///< Memory of all jobs that run side by side; 0: not told.
+  std::uint64_t address_space_bytes = 0;  ///< Address space of the process; 0: no limit.
+  std::filesystem::path log;              ///< The file to which what the job prints is appended.
 };
 
-/// What became of it. Neither done nor failed: so much work was done meanwhile.
+/// What has become of a job, or how much work was done meanwhile.
 struct JobReply {
   enum class Kind { kWorked, kDone, kFailed };
   Kind kind = Kind::kFailed;
-  std::int64_t worked = 0;  ///< vertices times levels since the last reply
-  std::string error;        ///< of a failed job: one sentence
-  JobResult result;         ///< of a job that is done
-  double cpu_seconds = 0;   ///< of this job
-  double peak_bytes = 0;    ///< resident at once, of the process while it ran
+  std::int64_t worked = 0;     ///< Vertices times levels since the last reply.
+  std::string error = {};      ///< Why the job failed: one sentence.
+  nlohmann::json result = {};  ///< What a job that is done tells, as its kind writes it; or null.
+  double cpu_seconds = 0;      ///< CPU time of this job.
+  double peak_bytes = 0;       ///< The most memory that the process had resident during the job.
 };
 
+/// Returns the message as one line without its end.
 std::string to_line(const JobRequest& request);
 std::string to_line(const JobReply& reply);
 
-/// Throw std::runtime_error on a line that is none.
-JobRequest job_request_from(const std::string& line);
+/// Reads a message. Throws std::runtime_error on any other line, and on jobs of other kinds.
+JobRequest job_request_from(const std::string& line, const JobKinds& kinds);
 JobReply job_reply_from(const std::string& line);
 
 }  // namespace semigeo::jobs

@@ -5,8 +5,8 @@
 
 #include "io/files/error.hpp"
 #include "jobs/archive/process_identity.hpp"
-#include "jobs/archive/scan_size.hpp"
 #include "jobs/archive/utc_time.hpp"
+#include "jobs/plan/job_kind.hpp"
 
 namespace semigeo::jobs {
 namespace {
@@ -53,15 +53,7 @@ void RunJournal::job_ended(const PlannedJob& planned, const JobOutcome& outcome)
                  .cpu_seconds = outcome.cpu_seconds,
                  .peak_bytes = outcome.peak_bytes,
                  .threads = outcome.threads};
-  if (planned.job.kind == JobKind::kSurface && !planned.sidecar_only) {
-    ScanSize size = scan_size(planned.job.input);
-    ended.format = std::move(size.format);
-    ended.input_bytes = static_cast<std::int64_t>(size.bytes);
-  }
-  if (const auto* result = std::get_if<SurfaceJobResult>(&outcome.result)) {
-    ended.vertices = result->vertices;
-    ended.levels = result->levels;
-  }
+  planned.job.kind->describe(planned.job, outcome.result, ended);
   write(ended);
 }
 

@@ -5,21 +5,22 @@
 #include <string>
 
 #include "jobs/archive/journal.hpp"
-#include "jobs/run/local_executor.hpp"
+#include "jobs/run/job_outcome.hpp"
 
 namespace semigeo::jobs {
 
-/// Writes one run into the journal of its archive. The run goes on without if that cannot be done.
+/// Writes one run into the journal of its archive. If the journal cannot be written, the run goes on
+/// without it.
 class RunJournal : public JobListener {
  public:
-  /// Begins the run; the host, process and threads of `run` are filled in.
+  /// Writes the beginning of the run, and fills in the host, the process and the threads of `run`.
   RunJournal(const std::filesystem::path& archive, RunStarted run);
 
   void job_started(const PlannedJob& planned) override;
   void job_ended(const PlannedJob& planned, const JobOutcome& outcome) override;
   void run_ended(const RunEnded& run);
 
-  /// Why there is no whole journal of this run; empty if there is.
+  /// Returns why the journal of this run is not complete; empty if it is.
   const std::string& problem() const { return problem_; }
 
  private:

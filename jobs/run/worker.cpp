@@ -19,11 +19,8 @@
 #include <vector>
 
 #include "engine/descriptor.hpp"
-#include "io/dataset/xdmf.hpp"
-#include "io/files/atomic_file.hpp"
 #include "io/files/error.hpp"
 #include "jobs/run/job_line.hpp"
-#include "jobs/run/job_stage.hpp"
 #include "jobs/run/process_usage.hpp"
 
 namespace semigeo::jobs {
@@ -83,9 +80,7 @@ class Reporter : public engine::Observer {
     if (now - reported_ < kReportInterval) return;
     reported_ = now;
     write_line(answers_, to_line(JobReply{.kind = JobReply::Kind::kWorked,
-                                          .worked = std::exchange(unreported_, 0),
-                                          .error = {},
-                                          .result = {}}));
+                                          .worked = std::exchange(unreported_, 0)}));
   }
   std::int64_t unreported() const { return unreported_; }
 
@@ -161,7 +156,7 @@ void limit_address_space(std::uint64_t bytes) {
 
 /// What SEMIGEO_TEST_FAULTS has for this job.
 std::string fault_of(const Job& job) {
-  const std::string name = job.kind == JobKind::kSurface ? job.name : job_id(job);
+  const std::string name = shown_name(job);
   const char* faults = std::getenv("SEMIGEO_TEST_FAULTS");
   std::string_view rest = faults == nullptr ? "" : faults;
   while (!rest.empty()) {
@@ -192,18 +187,6 @@ void simulate_fault(const JobRequest& request) {
     for (std::vector<std::vector<char>> all;;) all.emplace_back(std::size_t{1} << 26, '1');
 }
 
-/// Whether the sidecar could be made; if not, the dataset must be, too.
-bool remake_sidecar(const Job& job) {
-  std::string text;
-  try {
-    text = io::sidecar_text(job.output);
-  } catch (const io::Error&) {
-    return false;
-  }
-  io::write_file_atomically(io::sidecar_of(job.output), text);
-  return true;
-}
-
 /// From now on the peak is that of what follows.
 void restart_peak() {
   std::ofstream("/proc/self/clear_refs") << '5';
@@ -225,26 +208,26 @@ JobReply do_job(const JobRequest& request, JobLog& log, Reporter& reporter) {
   restart_peak();
   try {
     log.begin(request.log);
-    limit_address_space(request.memory_bytes);
+    limit_address_space(request.address_space_bytes);
     simulate_fault(request);
-    if (!request.sidecar_only || !remake_sidecar(request.job)) {
-      engine::Workers workers(request.threads);
-      reply.result = run_stage(request.job, request.parameters, {workers, reporter, {}});
-    }
+    engine::Workers workers(request.threads);
+    const JobKind& kind = *request.job.kind;
+    reply.result = kind.result_to_json(
+        kind.run(request.job, {{workers, reporter, {}}, request.memory_bytes}));
     reply.kind = JobReply::Kind::kDone;
   } catch (const std::bad_alloc&) {
     limit_address_space(0);
     reply.error = subject_of(request.job).string() + ": needs more than the " +
-                  std::to_string(request.memory_bytes >> 20) +
+                  std::to_string(request.address_space_bytes >> 20) +
                   " MiB of memory that a job may have; give --memory-per-job more" +
-                  (request.job.kind == JobKind::kSurface ? ", or decimate the scan" : "");
+                  request.job.kind->words().memory_remedy;
   } catch (const io::Error& e) {
     reply.error = e.what();
   } catch (const std::exception& e) {  // a thread that finds no room for its stack, for one
     limit_address_space(0);
     reply.error = subject_of(request.job).string() + ": " + e.what() +
                   "; run again, or give --memory-per-job more if its " +
-                  std::to_string(request.memory_bytes >> 20) + " MiB of memory were too little";
+                  std::to_string(request.address_space_bytes >> 20) + " MiB of memory were too little";
   }
   log.end();
   limit_address_space(0);
@@ -259,7 +242,7 @@ JobReply do_job(const JobRequest& request, JobLog& log, Reporter& reporter) {
 
 }  // namespace
 
-int serve_jobs(int requests, int answers) {
+int serve_jobs(int requests, int answers, const JobKinds& kinds) {
   Lines lines(requests);
   // Memory comes from the system as zeroed pages, one fault each: what is freed is soon used again.
   mallopt(M_MMAP_THRESHOLD, kLeastOwnMapping);
@@ -269,7 +252,7 @@ int serve_jobs(int requests, int answers) {
   while (lines.next(line)) {
     JobRequest request;
     try {
-      request = job_request_from(line);
+      request = job_request_from(line, kinds);
     } catch (const std::exception& e) {
       std::fprintf(stderr, "semigeo: a line %s\n", e.what());
       return 2;

@@ -1,16 +1,18 @@
 #pragma once
 
+#include "jobs/plan/job_kind.hpp"
+
 namespace semigeo::jobs {
 
-/// Does jobs until there are no more: reads a JobRequest a line from `requests`, answers with
-/// JobReply lines on `answers`, the last of which is its outcome. While a job runs, standard output
-/// and error go to its log, and its address space is limited; the log is removed if nothing was
-/// written to it. Whatever a job throws is its failure; whatever kills the process is for the
-/// reader of the answers to find out. Returns an exit code: 2 on a line that is no request, else 0.
+/// Does jobs of these kinds until there are no more. Reads a JobRequest a line from the descriptor
+/// `requests` and answers with JobReply lines on the descriptor `answers`; the last reply to a
+/// request is its outcome. While a job runs, standard output and error go to its log, and the
+/// address space of the process is limited; the log is removed if nothing was written to it.
+/// Whatever a job throws is its failure; whatever kills the process is for the reader of the
+/// answers to find out. Returns an exit code: 2 on a line that is no request, else 0.
 ///
-/// SEMIGEO_TEST_FAULTS="NAME=FAULT,..." makes the jobs of these names (of surface jobs the
-/// dataset's, of others "KIND NAME") crash, loop or take memory without end, or fail once: for
-/// tests of those who run workers.
-int serve_jobs(int requests, int answers);
+/// SEMIGEO_TEST_FAULTS="NAME=FAULT,..." makes jobs crash, loop or take memory without end, or fail
+/// once. NAME is shown_name of a job. It serves tests of those who run workers.
+int serve_jobs(int requests, int answers, const JobKinds& kinds);
 
 }  // namespace semigeo::jobs

@@ -7,11 +7,10 @@
 #include <optional>
 #include <set>
 
-#include "io/dataset/xdmf.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/files/error.hpp"
-#include "jobs/plan/job_estimates.hpp"
-#include "jobs/plan/job_inputs.hpp"
+#include "jobs/plan/job_kind.hpp"
+#include "jobs/run/job_logs.hpp"
 #include "jobs/slurm/task_list.hpp"
 
 namespace semigeo::jobs {
@@ -44,21 +43,18 @@ std::string quoted(const std::string& text) {
   return word + '\'';
 }
 
-/// Tasks judge by headers: what is damaged behind one has to go before they look. A task that never
-/// begins must not leave a run of an older dataset to the library.
+/// Removes what is damaged behind a good header, as tasks judge by headers; and outputs of other
+/// inputs, as a task that never begins must not leave them to the jobs after it.
 void remove_damaged(const PlannedJob& planned) {
-  remove_stale_run(planned.job);
-  if (!is_complete(planned.job)) return;
-  std::error_code ignored;
-  fs::remove(planned.sidecar_only ? io::sidecar_of(planned.job.output) : planned.job.output,
-             ignored);
+  const JobKind& kind = *planned.job.kind;
+  kind.remove_stale_output(planned.job);
+  if (is_complete(planned.job)) kind.discard_output(planned.job);
 }
 
 /// Tasks run in another folder.
 Job with_absolute_paths(Job job) {
   job.input = fs::absolute(job.input);
   job.output = fs::absolute(job.output);
-  if (!job.library.empty()) job.library = fs::absolute(job.library);
   return job;
 }
 
@@ -110,7 +106,6 @@ TaskSettings size_up(SlurmArray& array, const Needs& needs, const ExecutorOption
 /// What all stages of a run are made from.
 struct StageInputs {
   const std::vector<PlannedJob>& plan;
-  const JobParameters& parameters;
   const ExecutorOptions& options;
   const SlurmOptions& slurm;
   const SlurmFolders& folders;
@@ -120,15 +115,13 @@ struct StageInputs {
 
 JobRequest request_of(const PlannedJob& planned, const StageInputs& inputs) {
   return {.job = with_absolute_paths(planned.job),
-          .parameters = inputs.parameters,
-          .sidecar_only = planned.sidecar_only,
           .threads = inputs.threads,
-          .memory_bytes = inputs.options.memory_per_job,
+          .address_space_bytes = inputs.options.memory_per_job,
           .log = log_path(inputs.folders.archive / "logs", planned.job)};
 }
 
-SlurmStage stage_of(JobKind kind, const std::vector<std::size_t>& jobs, const StageInputs& inputs) {
-  const std::string name(name_of(kind));
+SlurmStage stage_of(const JobKind& kind, const std::vector<std::size_t>& jobs, const StageInputs& inputs) {
+  const std::string& name = kind.words().kind;
   const fs::path folder = inputs.folders.run / name;
   SlurmStage stage{.array = {.name = "semigeo-" + name,
                              .script = folder / "task.sh",
@@ -168,19 +161,23 @@ SlurmStage stage_of(JobKind kind, const std::vector<std::size_t>& jobs, const St
 
 std::vector<SlurmStage> stages_of(const std::vector<PlannedJob>& plan,
                                   const std::vector<std::size_t>& jobs,
-                                  const JobParameters& parameters, const ExecutorOptions& options,
+                                  const ExecutorOptions& options,
                                   const SlurmOptions& slurm, const SlurmFolders& folders) {
   const StageInputs inputs{
       .plan = plan,
-      .parameters = parameters,
       .options = options,
       .slurm = slurm,
       .folders = folders,
-      .estimates = estimates_of(plan, parameters, options.estimates, options.memory_bytes),
+      .estimates = estimates_of(plan, options.estimates, options.memory_bytes),
       .threads = std::max(1, options.threads)};
+  // Plans are made in the order of kinds: those of the jobs before a job come first.
+  std::vector<const JobKind*> kinds;
+  for (const std::size_t job : jobs)
+    if (std::ranges::find(kinds, plan[job].job.kind) == kinds.end())
+      kinds.push_back(plan[job].job.kind);
   std::vector<SlurmStage> stages;
   std::vector<std::optional<std::size_t>> stage_with(plan.size());  // the stage that has the job
-  for (const JobKind kind : kJobKinds) {
+  for (const JobKind* kind : kinds) {
     std::vector<std::size_t> of_kind;
     std::set<std::size_t> after;
     for (const std::size_t job : jobs) {
@@ -190,8 +187,7 @@ std::vector<SlurmStage> stages_of(const std::vector<PlannedJob>& plan,
       for (const std::size_t before : plan[job].after)
         if (stage_with[before]) after.insert(*stage_with[before]);
     }
-    if (of_kind.empty()) continue;
-    stages.push_back(stage_of(kind, of_kind, inputs));
+    stages.push_back(stage_of(*kind, of_kind, inputs));
     stages.back().after.assign(after.begin(), after.end());
   }
   return stages;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "jobs/run/local_executor.hpp"
+#include "jobs/run/local_runner.hpp"
 #include "jobs/slurm/slurm_commands.hpp"
 
 namespace semigeo::jobs {
@@ -38,7 +38,7 @@ struct SlurmFolders {
 /// io::Error if a file cannot be written.
 std::vector<SlurmStage> stages_of(const std::vector<PlannedJob>& plan,
                                   const std::vector<std::size_t>& jobs,
-                                  const JobParameters& parameters, const ExecutorOptions& options,
+                                  const ExecutorOptions& options,
                                   const SlurmOptions& slurm, const SlurmFolders& folders);
 
 }  // namespace semigeo::jobs

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/files/atomic_file.hpp"
+#include "jobs/run/local_runner.hpp"
 #include "jobs/slurm/task_list.hpp"
 
 namespace semigeo::jobs {
@@ -31,8 +32,9 @@ class Results : public JobListener {
   }
   /// What a first copy of the task has told of what it made stays.
   void set(const Job& job, const JobOutcome& outcome) {
-    JobOutcome& known = results_[job_id(job)];
-    if (outcome.state != JobState::kUpToDate || known.state != JobState::kDone) known = outcome;
+    TaskResult& known = results_[job_id(job)];
+    if (outcome.state == JobState::kUpToDate && known.outcome.state == JobState::kDone) return;
+    known = {.outcome = outcome, .result = job.kind->result_to_json(outcome.result)};
   }
   void write() {
     io::write_file_atomically(file_, results_text(results_));
@@ -55,7 +57,7 @@ ExecutorOptions options_of(const Task& task) {
                           .logs = settings.archive / "logs",
                           .threads = settings.threads,
                           .memory_bytes = settings.memory_bytes,
-                          .memory_per_job = task.jobs.front().memory_bytes,
+                          .memory_per_job = task.jobs.front().address_space_bytes,
                           .timeout_seconds = settings.timeout_seconds,
                           .retries = settings.retries,
                           .fail_fast = settings.fail_fast,
@@ -67,16 +69,13 @@ ExecutorOptions options_of(const Task& task) {
 
 }  // namespace
 
-bool run_task(const fs::path& list, int number, const fs::path& program) {
-  const Task task = read_task(list, number);
+bool run_task(const fs::path& list, int number, const fs::path& program, const JobKinds& kinds) {
+  const Task task = read_task(list, number, kinds);
   std::vector<PlannedJob> plan;
   std::uintmax_t bytes = 0;
   for (const JobRequest& request : task.jobs) {
     PlannedJob& planned = plan.emplace_back();
     planned.job = request.job;
-    // Of other kinds it depends on what the jobs before have made.
-    planned.up_to_date = request.job.kind == JobKind::kSurface && is_complete(request.job);
-    planned.sidecar_only = request.sidecar_only;
     planned.scan = request.job.input;
     bytes += bytes_to_read(planned);
   }
@@ -84,9 +83,8 @@ bool run_task(const fs::path& list, int number, const fs::path& program) {
   options.program = program;
   options.worker_log = log_of_task(list, number);
   Results results(results_of(list, number));
-  Progress progress(std::ranges::count(plan, false, &PlannedJob::up_to_date), bytes);
-  const std::vector<JobOutcome> outcomes =
-      run_jobs(plan, task.jobs.front().parameters, options, progress, &results);
+  Progress progress(std::ssize(plan), bytes);
+  const std::vector<JobOutcome> outcomes = run_jobs(plan, options, progress, &results);
   for (std::size_t i = 0; i < plan.size(); ++i) results.set(plan[i].job, outcomes[i]);
   results.write();
   return std::ranges::count(outcomes, JobState::kNotRun, &JobOutcome::state) == 0;

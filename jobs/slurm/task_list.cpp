@@ -68,28 +68,27 @@ TaskSettings settings_from(const std::string& line) {
   return settings;
 }
 
-JobReply reply_of(const JobOutcome& outcome) {
+JobReply reply_of(const TaskResult& result) {
+  const JobOutcome& outcome = result.outcome;
   JobReply reply{.kind = JobReply::Kind::kWorked,
                  .error = outcome.error,
-                 .result = outcome.result,
+                 .result = result.result,
                  .cpu_seconds = outcome.cpu_seconds,
                  .peak_bytes = outcome.peak_bytes};
   if (outcome.state == JobState::kFailed || outcome.state == JobState::kSkipped)
     reply.kind = JobReply::Kind::kFailed;
-  if (outcome.state == JobState::kDone || outcome.state == JobState::kUpToDate)
-    reply.kind = JobReply::Kind::kDone;
+  if (is_made(outcome.state)) reply.kind = JobReply::Kind::kDone;
   return reply;
 }
 
-JobOutcome outcome_of(JobReply reply) {
-  JobOutcome outcome{.state = JobState::kNotRun,
-                     .error = std::move(reply.error),
-                     .result = std::move(reply.result),
-                     .cpu_seconds = reply.cpu_seconds,
-                     .peak_bytes = reply.peak_bytes};
-  if (reply.kind == JobReply::Kind::kDone) outcome.state = JobState::kDone;
-  if (reply.kind == JobReply::Kind::kFailed) outcome.state = JobState::kFailed;
-  return outcome;
+TaskResult result_of(JobReply reply) {
+  TaskResult result{.outcome = {.error = std::move(reply.error),
+                                .cpu_seconds = reply.cpu_seconds,
+                                .peak_bytes = reply.peak_bytes},
+                    .result = std::move(reply.result)};
+  if (reply.kind == JobReply::Kind::kDone) result.outcome.state = JobState::kDone;
+  if (reply.kind == JobReply::Kind::kFailed) result.outcome.state = JobState::kFailed;
+  return result;
 }
 
 }  // namespace
@@ -121,7 +120,7 @@ std::string task_list_text(const TaskSettings& settings,
   return text;
 }
 
-Task read_task(const fs::path& list, int number) {
+Task read_task(const fs::path& list, int number, const JobKinds& kinds) {
   constexpr const char* kRemedy = "run semigeo again: it makes another list";
   std::ifstream stream(list);
   if (!stream) throw io::Error(list, "", "cannot be read", kRemedy);
@@ -136,7 +135,7 @@ Task read_task(const fs::path& list, int number) {
     while (std::getline(stream, line)) {
       ++place;
       if (line.starts_with(head)) {
-        task.jobs.push_back(job_request_from(line));
+        task.jobs.push_back(job_request_from(line, kinds));
       } else if (!task.jobs.empty()) {
         break;
       }
@@ -159,14 +158,15 @@ fs::path log_of_task(const fs::path& list, int number) {
 
 std::string results_text(const TaskResults& results) {
   std::string text;
-  for (const auto& [job, outcome] : results) {
+  for (const auto& [job, result] : results) {
+    const JobOutcome& outcome = result.outcome;
     const std::string front = json{
         {"job", escaped(job)},
         {"seconds", outcome.seconds},
         {"threads", outcome.threads},
         {"attempts",
          outcome.attempts}}.dump();
-    text += with_front(front.substr(0, front.size() - 1) + ',', to_line(reply_of(outcome))) + '\n';
+    text += with_front(front.substr(0, front.size() - 1) + ',', to_line(reply_of(result))) + '\n';
   }
   return text;
 }
@@ -176,12 +176,13 @@ TaskResults read_results(const fs::path& file) {
   std::ifstream stream(file);
   for (std::string line; std::getline(stream, line);) {
     try {
-      JobOutcome outcome = outcome_of(job_reply_from(line));
+      TaskResult result = result_of(job_reply_from(line));
+      JobOutcome& outcome = result.outcome;
       const json object = json::parse(line);
       object.at("seconds").get_to(outcome.seconds);
       object.at("threads").get_to(outcome.threads);
       object.at("attempts").get_to(outcome.attempts);
-      results[unescaped(object.at("job").get<std::string>())] = std::move(outcome);
+      results[unescaped(object.at("job").get<std::string>())] = std::move(result);
     } catch (const std::exception&) {
       continue;  // the output itself will tell
     }

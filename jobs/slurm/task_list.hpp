@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "jobs/run/job_line.hpp"
-#include "jobs/run/local_executor.hpp"
+#include "jobs/run/job_outcome.hpp"
 
 namespace semigeo::jobs {
 
@@ -44,19 +44,25 @@ struct Task {
 };
 
 /// Of a file that holds task_list_text. io::Error if it cannot be read, or has no such task.
-Task read_task(const std::filesystem::path& list, int number);
+Task read_task(const std::filesystem::path& list, int number, const JobKinds& kinds);
 
 /// Where a task tells what became of its jobs: results/<number>.jsonl beside the list.
 std::filesystem::path results_of(const std::filesystem::path& list, int number);
 /// Where Slurm and the task itself print: task-<number>.log beside the list.
 std::filesystem::path log_of_task(const std::filesystem::path& list, int number);
 
-/// By job_id. What was neither done nor has failed may still be done.
-using TaskResults = std::map<std::string, JobOutcome>;
+/// What a task tells of one job. Jobs that are neither done nor failed may still be done.
+struct TaskResult {
+  JobOutcome outcome;     ///< Its `result` is empty.
+  nlohmann::json result;  ///< The result as the job's kind writes it; or null.
+};
+/// Results by job_id.
+using TaskResults = std::map<std::string, TaskResult>;
 
-/// A line for each job: its job_id and JobReply, the seconds, threads and attempts it took.
+/// Returns a line for each job: its job_id and JobReply, and the seconds, threads and attempts that
+/// it took.
 std::string results_text(const TaskResults& results);
-/// Lines that are damaged are passed over; of no file there is none.
+/// Reads results. Passes over damaged lines; a file that is not there has none.
 TaskResults read_results(const std::filesystem::path& file);
 
 }  // namespace semigeo::jobs

@@ -9,7 +9,7 @@
 #include "bench/support/scans.hpp"
 #include "io/files/file_digest.hpp"
 #include "io/scans/mesh_writer.hpp"
-#include "jobs/plan/job_key.hpp"
+#include "jobs/kinds/surface.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -6,6 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "jobs/kinds/library.hpp"
+#include "jobs/kinds/partition.hpp"
+#include "jobs/kinds/recognise.hpp"
+#include "jobs/kinds/surface.hpp"
+#include "jobs/kinds/triplets.hpp"
+
 namespace semigeo::jobs {
 namespace {
 
@@ -15,6 +21,8 @@ std::vector<PlannedJob> plan() {
   const auto add = [&](const std::string& name) -> PlannedJob& {
     PlannedJob planned;
     planned.scan = "/in/" + name;
+    planned.job.kind = &surface_kind();
+    planned.job.data = SurfaceJobData{};
     planned.job.name = name;
     planned.job.output = "archive/scans/" + name + ".vtkhdf";
     jobs.push_back(planned);
@@ -25,7 +33,7 @@ std::vector<PlannedJob> plan() {
   add("c.ply").reasons = {{.kind = Reason::Kind::kScan}};
   PlannedJob& sidecar = add("d.ply");
   sidecar.reasons = {{.kind = Reason::Kind::kNoSidecar}};
-  sidecar.sidecar_only = true;
+  surface_data(sidecar.job).sidecar_only = true;
   add("e.ply").error = "cannot be read";
   return jobs;
 }
@@ -40,7 +48,8 @@ TEST(PlanGraphTest, LeadsFromScansThroughJobsToDatasets) {
                                  .kind = "surface",
                                  .name = "b.ply",
                                  .state = "would run",
-                                 .dependencies = {"scan /in/b.ply"}}));
+                                 .dependencies = {"scan /in/b.ply"},
+                                 .is_job = true}));
   EXPECT_EQ(graph[5], (GraphNode{.id = "dataset archive/scans/b.ply.vtkhdf",
                                  .kind = "dataset",
                                  .name = "archive/scans/b.ply.vtkhdf",
@@ -63,17 +72,17 @@ TEST(PlanGraphTest, LeadsFromScansThroughJobsToDatasets) {
 TEST(PlanGraphTest, LeadsFromDatasetsToALibrary) {
   std::vector<PlannedJob> jobs = plan();
   jobs.erase(jobs.begin() + 1, jobs.end());
-  const auto add = [&](JobKind kind, const char* name, std::vector<std::size_t> after) {
+  const auto add = [&](const JobKind& kind, const char* name, std::vector<std::size_t> after) {
     PlannedJob planned;
-    planned.job = {.kind = kind, .name = name, .input = "b.vtkhdf", .output = name, .key = {}};
+    planned.job = {.kind = &kind, .name = name, .input = "b.vtkhdf", .output = name, .key = {}};
     planned.after = std::move(after);
     planned.reasons = {{.kind = Reason::Kind::kNoOutput}};
     jobs.push_back(planned);
   };
-  add(JobKind::kTriplets, "a", {0});
-  add(JobKind::kTriplets, "b", {});
-  add(JobKind::kPartition, "p", {1, 2});
-  add(JobKind::kLibrary, "l", {3});
+  add(triplets_kind(), "a", {0});
+  add(triplets_kind(), "b", {});
+  add(partition_kind(), "p", {1, 2});
+  add(library_kind(), "l", {3});
   const auto graph = graph_of(jobs);
   const auto dependencies = [&](const std::string& id) {
     return std::ranges::find(graph, id, &GraphNode::id)->dependencies;
@@ -93,12 +102,12 @@ TEST(PlanGraphTest, ScenesShareTheirLibrary) {
   std::vector<PlannedJob> jobs(2);
   for (PlannedJob& planned : jobs) {
     const std::string name = &planned == jobs.data() ? "a" : "b";
-    planned.job = {.kind = JobKind::kRecognise,
+    planned.job = {.kind = &recognise_kind(),
                    .name = name,
                    .input = name + ".ply",
                    .output = name + ".json",
                    .key = {},
-                   .library = "/l.h5"};
+                   .data = RecogniseJobData{.library = "/l.h5"}};
     planned.scan = "/in/" + name + ".ply";
     planned.reasons = {{.kind = Reason::Kind::kNoOutput}};
   }

@@ -8,7 +8,17 @@
 #include <vector>
 
 #include "io/files/utf8.hpp"
-
+#include "jobs/kinds/all_kinds.hpp"
+#include "jobs/kinds/library.hpp"
+#include "jobs/kinds/partition.hpp"
+#include "jobs/kinds/recognise.hpp"
+#include "jobs/kinds/surface.hpp"
+#include "jobs/kinds/triplets.hpp"
+#include "jobs/stages/library_job.hpp"
+#include "jobs/stages/partition_job.hpp"
+#include "jobs/stages/recognise_job.hpp"
+#include "jobs/stages/surface_job.hpp"
+#include "jobs/stages/triplets_job.hpp"
 #include "tests/jobs/stages/unusual_parameters.hpp"
 
 namespace semigeo::jobs {
@@ -47,14 +57,10 @@ void every_field_of_result(Result& result, const Visit& visit) {
 
 template <typename Request, typename Visit>
 void every_field_of_request(Request& request, const Visit& visit) {
-  auto& [job, parameters, sidecar_only, threads, memory_bytes, log] = request;
-  visit_each(visit, sidecar_only, threads, memory_bytes, log);
-  {
-    auto& [kind, name, input, output, key, input_name, input_xxh3, models, shapes, library,
-           library_digest, partitions, buffer_bytes] = job;
-    visit_each(visit, name, input, output, key, input_name, input_xxh3, models, shapes.first,
-               shapes.end, library, library_digest, partitions, buffer_bytes);
-  }
+  auto& [job, threads, memory_bytes, address_space_bytes, log] = request;
+  visit_each(visit, threads, memory_bytes, address_space_bytes, log);
+  auto& [kind, name, input, output, key, data] = job;
+  visit_each(visit, name, input, output, key);
 }
 
 /// A value that no other field has.
@@ -108,40 +114,79 @@ std::vector<std::string> values_of(const SurfaceJobResult& result) {
 std::vector<std::string> values_of(const JobRequest& request) {
   Listed listed;
   every_field_of_request(request, listed);
-  listed.values.emplace_back(name_of(request.job.kind));
-  listed.values.push_back(to_json(request.parameters.surface));
-  listed.values.push_back(to_json(request.parameters.recognition));
-  listed.values.push_back(to_json(request.parameters.search));
+  listed.values.push_back(request.job.kind->words().kind);
+  listed.values.push_back(request.job.kind->data_to_json(request.job).dump());
   return listed.values;
 }
 
+RecognitionParameters unusual_recognition() {
+  return {.levels = 7, .most_features = 17, .torsion = false, .samples = 170, .least_reach = 0.17};
+}
+
+/// Jobs of every kind whose data differs from the default in every field.
+std::vector<Job> unusual_jobs() {
+  const std::vector<std::string> models = {"b%\xff", "c"};
+  const auto job = [](const JobKind& kind, std::any data) {
+    return Job{.kind = &kind, .name = {}, .input = {}, .output = {}, .key = {}, .data = data};
+  };
+  return {
+      job(surface_kind(), SurfaceJobData{.input_name = "n",
+                                         .input_xxh3 = "x",
+                                         .parameters = unusual_parameters(),
+                                         .sidecar_only = true}),
+      job(triplets_kind(), TripletsJobData{unusual_recognition()}),
+      job(partition_kind(), PartitionJobData{.models = models,
+                                             .shapes = {.first = 3, .end = 5},
+                                             .partitions = 7,
+                                             .library = "/l\xff.h5",
+                                             .parameters = unusual_recognition()}),
+      job(library_kind(),
+          LibraryJobData{.models = models, .partitions = 7, .parameters = unusual_recognition()}),
+      job(recognise_kind(),
+          RecogniseJobData{.input_name = "n",
+                           .input_xxh3 = "x",
+                           .library = "/l\xff.h5",
+                           .library_digest = "d",
+                           .parameters = unusual_recognition(),
+                           .search = {.method = RecognitionMethod::kThesis, .min_score = 0.123}})};
+}
+
+Job plain_job() {
+  Job job = unusual_jobs().front();
+  job.data = SurfaceJobData{};
+  return job;
+}
+
 TEST(JobLineTest, EveryFieldOfARequestArrives) {
-  JobRequest request;
-  every_field_of_request(request, Distinct());
-  request.parameters = {.surface = unusual_parameters(),
-                        .recognition = {.levels = 7,
-                                        .most_features = 17,
-                                        .torsion = false,
-                                        .samples = 170,
-                                        .least_reach = 0.17},
-                        .search = {.method = RecognitionMethod::kThesis, .min_score = 0.123}};
-  request.job.kind = JobKind::kPartition;
-  for (const JobRequest& sent : {request, JobRequest{}}) {
+  for (const Job& job : unusual_jobs()) {
+    JobRequest sent;
+    sent.job = job;
+    every_field_of_request(sent, Distinct());
     const std::string line = to_line(sent);
     EXPECT_EQ(line.find('\n'), std::string::npos);
-    EXPECT_EQ(values_of(job_request_from(line)), values_of(sent));
+    EXPECT_EQ(values_of(job_request_from(line, all_kinds())), values_of(sent));
+  }
+}
+
+TEST(JobLineTest, DataOfEveryKindDiffersFromTheDefaultInEveryField) {
+  for (const Job& job : unusual_jobs()) {
+    const nlohmann::json sent = job.kind->data_to_json(job);
+    const JobRequest read = job_request_from(to_line({.job = job, .log = {}}), all_kinds());
+    EXPECT_EQ(job.kind->data_to_json(read.job), sent) << job.kind->words().kind;
+    for (const auto& [name, value] : sent.items()) EXPECT_FALSE(value.empty()) << name;
   }
 }
 
 TEST(JobLineTest, PathsAreBytes) {
   JobRequest request;
+  request.job = unusual_jobs().front();
   request.job.input = "/scans/Krug N\u00ba \xff\xfe/100%41\n.ply";
   request.job.output = "/archive \xc2/scans/a%.vtkhdf";
   request.log = "/archive \xc2/logs/\"\\\x01.log";
   const std::string line = to_line(request);
   EXPECT_TRUE(io::is_utf8(line));
   EXPECT_EQ(line.find('\n'), std::string::npos);
-  const JobRequest read = job_request_from(line);
+  const JobRequest read = job_request_from(line, all_kinds());
   EXPECT_EQ(read.job.input.native(), request.job.input.native());
   EXPECT_EQ(read.job.output.native(), request.job.output.native());
   EXPECT_EQ(read.log.native(), request.log.native());
@@ -153,8 +198,7 @@ TEST(JobLineTest, EveryFieldOfAResultArrives) {
   for (const SurfaceJobResult& result : {filled, SurfaceJobResult{}}) {
     const JobReply sent = {.kind = JobReply::Kind::kDone,
                            .worked = 123,
-                           .error = {},
-                           .result = result,
+                           .result = surface_kind().result_to_json(result),
                            .cpu_seconds = 1.0 / 3,
                            .peak_bytes = 1e12 + 1};
     const std::string line = to_line(sent);
@@ -165,37 +209,38 @@ TEST(JobLineTest, EveryFieldOfAResultArrives) {
     EXPECT_EQ(error, "");
     EXPECT_EQ(cpu_seconds, 1.0 / 3);
     EXPECT_EQ(peak_bytes, 1e12 + 1);
-    ASSERT_TRUE(std::holds_alternative<SurfaceJobResult>(read));
-    EXPECT_EQ(values_of(std::get<SurfaceJobResult>(read)), values_of(result));
+    const std::any typed = surface_kind().result_from_json(read);
+    EXPECT_EQ(values_of(std::any_cast<const SurfaceJobResult&>(typed)), values_of(result));
   }
 }
 
-JobResult after_a_line(const JobResult& result) {
-  return job_reply_from(to_line({.kind = JobReply::Kind::kDone, .error = {}, .result = result}))
-      .result;
+template <typename Result>
+Result after_a_line(const JobKind& kind, const Result& result) {
+  const nlohmann::json sent = kind.result_to_json(result);
+  const JobReply read = job_reply_from(to_line({.kind = JobReply::Kind::kDone, .result = sent}));
+  return std::any_cast<Result>(kind.result_from_json(read.result));
 }
 
 TEST(JobLineTest, ResultsOfEveryKindArrive) {
-  const auto triplets = after_a_line(TripletsJobResult{.features = 1, .samples = 2, .triplets = 3});
-  const auto [features, samples, count] = std::get<TripletsJobResult>(triplets);
+  const auto [features, samples, count] =
+      after_a_line(triplets_kind(), TripletsJobResult{.features = 1, .samples = 2, .triplets = 3});
   EXPECT_EQ(std::vector({features, samples, count}), (std::vector<std::int64_t>{1, 2, 3}));
-  const auto partition = after_a_line(PartitionJobResult{.postings = std::int64_t{1} << 40});
-  EXPECT_EQ(std::get<PartitionJobResult>(partition).postings, std::int64_t{1} << 40);
-  const auto library = after_a_line(LibraryJobResult{.models = 1, .postings = 2, .digest = "d"});
-  const auto [models, postings, digest] = std::get<LibraryJobResult>(library);
+  const auto partition =
+      after_a_line(partition_kind(), PartitionJobResult{.postings = std::int64_t{1} << 40});
+  EXPECT_EQ(partition.postings, std::int64_t{1} << 40);
+  const auto [models, postings, digest] =
+      after_a_line(library_kind(), LibraryJobResult{.models = 1, .postings = 2, .digest = "d"});
   EXPECT_EQ(std::vector({models, postings}), (std::vector<std::int64_t>{1, 2}));
   EXPECT_EQ(digest, "d");
-  const auto recognised =
-      after_a_line(RecogniseJobResult{.features = 1, .triplets = 2, .objects = 3});
-  const auto [found, looked_up, objects] = std::get<RecogniseJobResult>(recognised);
+  const auto [found, looked_up, objects] = after_a_line(
+      recognise_kind(), RecogniseJobResult{.features = 1, .triplets = 2, .objects = 3});
   EXPECT_EQ(std::vector({found, looked_up, objects}), (std::vector<std::int64_t>{1, 2, 3}));
 }
 
 TEST(JobLineTest, AJobMayBeDoneWithoutADataset) {
-  const JobReply read =
-      job_reply_from(to_line({.kind = JobReply::Kind::kDone, .error = {}, .result = {}}));
+  const JobReply read = job_reply_from(to_line({.kind = JobReply::Kind::kDone, .result = {}}));
   EXPECT_EQ(read.kind, JobReply::Kind::kDone);
-  EXPECT_EQ(read.result.index(), 0u);
+  EXPECT_TRUE(read.result.is_null());
 }
 
 TEST(JobLineTest, WorkIsNoOutcome) {
@@ -220,7 +265,7 @@ TEST(JobLineTest, AFailureSaysWhyWhateverTheReason) {
   EXPECT_EQ(read.error, name);
   EXPECT_EQ(read.cpu_seconds, 0.5);
   EXPECT_EQ(read.peak_bytes, 4096);
-  EXPECT_EQ(read.result.index(), 0u);
+  EXPECT_TRUE(read.result.is_null());
   // An error that names a file is what the file system says, and that may be no text.
   const JobReply bytes = job_reply_from(
       to_line({.kind = JobReply::Kind::kFailed, .error = "/a\xff: is no scan", .result = {}}));
@@ -230,14 +275,14 @@ TEST(JobLineTest, AFailureSaysWhyWhateverTheReason) {
 TEST(JobLineTest, ALineThatIsNoneIsRefused) {
   for (const std::string line :
        {"", "{", "null", "[]", "7", "\"done\"", "{}", "\xff", "{\"worked\":\"much\"}",
-        "{\"done\":null}", "{\"failed\":\"x\"}", "{\"done\":{\"format\":\"PLY\"},\"worked\":1}"}) {
-    EXPECT_THROW(job_request_from(line), std::runtime_error) << line;
+        "{\"done\":null}", "{\"failed\":\"x\"}"}) {
+    EXPECT_THROW(job_request_from(line, all_kinds()), std::runtime_error) << line;
     EXPECT_THROW(job_reply_from(line), std::runtime_error) << line;
   }
   // Each field is asked for.
-  SurfaceJobResult result;
-  const std::string request = to_line(JobRequest{});
-  const std::string done = to_line({.kind = JobReply::Kind::kDone, .error = {}, .result = result});
+  const nlohmann::json result = surface_kind().result_to_json(SurfaceJobResult{});
+  const std::string request = to_line({.job = plain_job(), .log = {}});
+  const std::string done = to_line({.kind = JobReply::Kind::kDone, .result = result});
   const auto renamed = [](std::string line, std::size_t quote) {
     return line.insert(quote + 1, "not ");
   };
@@ -245,7 +290,7 @@ TEST(JobLineTest, ALineThatIsNoneIsRefused) {
   for (std::size_t at = 0; (at = request.find('"', at)) != std::string::npos; ++at) {
     const std::size_t end = request.find('"', at + 1);
     if (request[end + 1] == ':') {
-      EXPECT_THROW(job_request_from(renamed(request, at)), std::runtime_error)
+      EXPECT_THROW(job_request_from(renamed(request, at), all_kinds()), std::runtime_error)
           << request.substr(at);
       ++names;
     }
@@ -255,7 +300,9 @@ TEST(JobLineTest, ALineThatIsNoneIsRefused) {
   for (std::size_t at = 0; (at = done.find('"', at)) != std::string::npos; ++at) {
     const std::size_t end = done.find('"', at + 1);
     if (done[end + 1] == ':' && done.compare(at, 6, "\"done\"") != 0)
-      EXPECT_THROW(job_reply_from(renamed(done, at)), std::runtime_error) << done.substr(at);
+      EXPECT_THROW(surface_kind().result_from_json(job_reply_from(renamed(done, at)).result),
+                   std::exception)
+          << done.substr(at);
     at = end;
   }
 }

@@ -6,6 +6,9 @@
 #include <fstream>
 #include <vector>
 
+#include "jobs/run/local_runner.hpp"
+#include "tests/jobs/scans_to_run.hpp"
+#include "tests/jobs/written_text.hpp"
 #include "tests/support/scan_file.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -17,10 +20,10 @@ namespace fs = std::filesystem;
 
 TEST(RunJournalTest, TellsWhatARunDid) {
   const tests::TemporaryFolder folder;
-  RunConfig config;
+  tests::ScansToRun config;
   config.inputs = {folder / "in"};
   config.archive = folder / "archive";
-  config.jobs.surface.levels = 1;
+  config.surface.levels = 1;
   fs::create_directories(folder / "in");
   fs::create_directories(config.archive);
   tests::write_obj(folder / "in/a.obj", shapes::icosphere(2));
@@ -32,12 +35,12 @@ TEST(RunJournalTest, TellsWhatARunDid) {
     options.threads = 1;  // one job after the other
     Progress progress(0, 0);
     RunJournal journal(config.archive, {.version = "1", .threads = 2, .jobs = 2});
-    run_jobs(plan_jobs(config), config.jobs, options, progress, &journal);
+    run_jobs(plan_scans(config), options, progress, &journal);
     journal.run_ended({.done = 1, .failed = 1});
     EXPECT_EQ(journal.problem(), "");
   };
   run();
-  const auto plan = plan_jobs(config);
+  const auto plan = plan_scans(config);
   std::vector<JournalEntry> entries;
   read_journal(config.archive, [&](const JournalEntry& entry) { entries.push_back(entry); });
   ASSERT_EQ(entries.size(), 6u);
@@ -73,8 +76,9 @@ TEST(RunJournalTest, ARunGoesOnWithoutAJournal) {
   const tests::TemporaryFolder folder;
   fs::create_directory(folder / "journal.jsonl");
   RunJournal journal(folder.path(), {});
-  journal.job_started({});
-  journal.job_ended({}, {});
+  const PlannedJob planned = tests::text_job("a", folder.path(), {});
+  journal.job_started(planned);
+  journal.job_ended(planned, {});
   journal.run_ended({});
   EXPECT_NE(journal.problem().find("journal.jsonl"), std::string::npos) << journal.problem();
 }

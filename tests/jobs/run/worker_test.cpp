@@ -11,8 +11,10 @@
 #include "engine/child_process.hpp"
 #include "engine/descriptor.hpp"
 #include "io/dataset/dataset.hpp"
-#include "jobs/plan/plan.hpp"
+#include "jobs/kinds/all_kinds.hpp"
+#include "jobs/kinds/surface.hpp"
 #include "jobs/run/job_line.hpp"
+#include "tests/jobs/scans_to_run.hpp"
 #include "tests/support/scan_file.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -35,13 +37,12 @@ class WorkerTest : public testing::Test {
  protected:
   /// A job over a new scan, as a run would plan it.
   JobRequest request(const char* name, int subdivisions = 1) {
-    RunConfig config;
+    tests::ScansToRun config;
     config.inputs = {tests::write_obj(folder_ / name, shapes::icosphere(subdivisions))};
     config.archive = folder_ / "archive";
-    config.jobs.surface.levels = 1;
+    config.surface.levels = 1;
     fs::create_directories(folder_ / "archive/scans");
-    return {.job = plan_jobs(config).front().job,
-            .parameters = config.jobs,
+    return {.job = tests::plan_scans(config).front().job,
             .log = folder_ / "logs" / (std::string(name) + ".log")};
   }
 
@@ -91,9 +92,9 @@ TEST_F(WorkerTest, DoesOneJobAfterTheOther) {
     ASSERT_TRUE(answer.has_value());
     EXPECT_EQ(answer->kind, JobReply::Kind::kDone);
     EXPECT_EQ(answer->error, "");
-    ASSERT_NE(answer->result.index(), 0u);
-    EXPECT_EQ(std::get<SurfaceJobResult>(answer->result).vertices, scan.vertices);
-    EXPECT_EQ(std::get<SurfaceJobResult>(answer->result).format, "OBJ");
+    ASSERT_FALSE(answer->result.is_null());
+    EXPECT_EQ(answer->result.at("vertices"), scan.vertices);
+    EXPECT_EQ(answer->result.at("format"), "OBJ");
     EXPECT_EQ(worked_, 2 * scan.vertices);
     EXPECT_GT(answer->cpu_seconds, 0);
     EXPECT_GT(answer->peak_bytes, 1e6);
@@ -181,9 +182,9 @@ TEST_F(WorkerTest, MemoryBeyondTheLimitIsAFailureAndTheNextJobHasIts) {
   const tests::TestFaults faults("bomb.obj=memory");
   const auto worker = start();
   JobRequest bomb = request("bomb.obj");
-  bomb.memory_bytes = std::uint64_t{600} << 20;
+  bomb.address_space_bytes = std::uint64_t{600} << 20;
   JobRequest good = request("good.obj", 3);
-  good.memory_bytes = bomb.memory_bytes;
+  good.address_space_bytes = bomb.address_space_bytes;
   for (int round = 0; round < 2; ++round) {
     const auto failed = reply_to(worker, bomb);
     ASSERT_TRUE(failed.has_value());
@@ -209,7 +210,7 @@ TEST_F(WorkerTest, HoweverLittleMemoryThereIsTheFailureNamesTheScan) {
   // Enough for all but the last arrays, so that HDF5 is the one to miss it.
   for (std::uint64_t k = 44 << 10; k < 54 << 10; k += 256) kibibytes.push_back(k);
   for (const std::uint64_t k : kibibytes) {
-    wanted.memory_bytes = k << 10;
+    wanted.address_space_bytes = k << 10;
     fs::remove(output);
     const auto worker = start();  // what another job has left changes what is too little
     const auto answer = reply_to(worker, wanted);
@@ -228,7 +229,7 @@ TEST_F(WorkerTest, HoweverLittleMemoryThereIsTheFailureNamesTheScan) {
     children_.kill(worker);
     EXPECT_FALSE(reply().has_value());
   }
-  wanted.memory_bytes = std::uint64_t{1} << 30;
+  wanted.address_space_bytes = std::uint64_t{1} << 30;
   const auto answer = reply_to(start(), wanted);
   ASSERT_TRUE(answer.has_value());
   EXPECT_EQ(answer->kind, JobReply::Kind::kDone) << answer->error;
@@ -242,18 +243,18 @@ TEST_F(WorkerTest, ALostSidecarIsMadeAgainWithoutTheDataset) {
   const std::string text = contents(sidecar);
   ASSERT_FALSE(text.empty());
   fs::remove(sidecar);
-  wanted.sidecar_only = true;
+  surface_data(wanted.job).sidecar_only = true;
   const auto made = reply_to(worker, wanted);
   ASSERT_TRUE(made.has_value());
   EXPECT_EQ(made->kind, JobReply::Kind::kDone);
-  EXPECT_EQ(made->result.index(), 0u);
+  EXPECT_TRUE(made->result.is_null());
   EXPECT_EQ(contents(sidecar), text);
   // Without a dataset to make it from, that is made, too.
   fs::remove(sidecar);
   fs::remove(wanted.job.output);
   const auto both = reply_to(worker, wanted);
   ASSERT_TRUE(both.has_value());
-  EXPECT_NE(both->result.index(), 0u);
+  EXPECT_FALSE(both->result.is_null());
   EXPECT_EQ(contents(sidecar), text);
   EXPECT_TRUE(fs::exists(wanted.job.output));
 }
@@ -284,7 +285,7 @@ TEST_F(WorkerTest, RequestsMayComeInPieces) {
   const std::string sent = line + line + "{\"half";
   ASSERT_EQ(write(ours.get(), sent.data(), sent.size()), static_cast<ssize_t>(sent.size()));
   shutdown(ours.get(), SHUT_WR);
-  EXPECT_EQ(serve_jobs(theirs.get(), theirs.get()), 0);
+  EXPECT_EQ(serve_jobs(theirs.get(), theirs.get(), all_kinds()), 0);
   shutdown(theirs.get(), SHUT_WR);
   std::string answers;
   char buffer[4096];

@@ -5,6 +5,11 @@
 #include <fstream>
 #include <iterator>
 
+#include "jobs/kinds/all_kinds.hpp"
+#include "jobs/kinds/library.hpp"
+#include "jobs/kinds/partition.hpp"
+#include "jobs/kinds/surface.hpp"
+#include "jobs/kinds/triplets.hpp"
 #include "jobs/slurm/task_list.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -24,6 +29,8 @@ class SlurmStageTest : public testing::Test {
   /// A scan of so many bytes, of which only the size counts.
   void add(const std::string& name, std::uint64_t bytes) {
     PlannedJob& planned = plan_.emplace_back();
+    planned.job.kind = &surface_kind();
+    planned.job.data = SurfaceJobData{};
     planned.job.name = name;
     planned.job.input = folder_ / name;
     planned.job.output = folders_.archive / "scans" / (name + ".vtkhdf");
@@ -31,9 +38,7 @@ class SlurmStageTest : public testing::Test {
     fs::resize_file(planned.job.input, bytes);
     jobs_.push_back(plan_.size() - 1);
   }
-  SlurmStage stage() const {
-    return stages_of(plan_, jobs_, {}, options_, slurm_, folders_).front();
-  }
+  SlurmStage stage() const { return stages_of(plan_, jobs_, options_, slurm_, folders_).front(); }
   Estimate estimate(std::size_t job) const {
     return options_.estimates.of(
         {.format = "PLY binary", .bytes = fs::file_size(plan_[job].job.input)},
@@ -59,7 +64,7 @@ TEST_F(SlurmStageTest, AsksForWhatTheLargestTaskNeeds) {
   EXPECT_EQ(made.array.cpus, 1);
   EXPECT_GT(static_cast<double>(made.array.memory_bytes), 1.4 * estimate(1).peak_bytes);
   EXPECT_LT(static_cast<double>(made.array.memory_bytes), 2 * estimate(1).peak_bytes + 1e9);
-  const Task task = read_task(made.list, 0);
+  const Task task = read_task(made.list, 0, all_kinds());
   ASSERT_EQ(task.jobs.size(), 2u);
   EXPECT_EQ(task.jobs[0].job.name, "large.ply");
   EXPECT_LT(task.settings.memory_bytes, made.array.memory_bytes);
@@ -82,36 +87,32 @@ TEST_F(SlurmStageTest, WhatTheUserSaysHolds) {
   EXPECT_EQ(made.array.memory_bytes, options_.memory_bytes);
   EXPECT_GT(made.array.seconds, 5000);
   EXPECT_LT(made.array.seconds, 5100);
-  const Task task = read_task(made.list, 0);
+  const Task task = read_task(made.list, 0, all_kinds());
   EXPECT_EQ(task.settings.threads, 3);
   EXPECT_EQ(task.settings.retries, 0);
   EXPECT_TRUE(task.settings.fail_fast);
   EXPECT_EQ(task.settings.deadline, 0);
-  EXPECT_EQ(task.jobs[0].memory_bytes, options_.memory_per_job);
+  EXPECT_EQ(task.jobs[0].address_space_bytes, options_.memory_per_job);
 }
 
 TEST_F(SlurmStageTest, EachKindIsAStageThatWaitsForThoseBeforeIt) {
   add("a.ply", kMegabyte);
   add("b.ply", 50 * kMegabyte);
-  const auto more = [&](JobKind kind, const std::string& name, std::vector<std::size_t> after) {
+  const auto more = [&](Job job, std::vector<std::size_t> after) {
     PlannedJob planned;
-    planned.job = {.kind = kind,
-                   .name = name,
-                   .input = folder_ / "none",
-                   .output = folder_ / (name + ".out"),
-                   .key = "k",
-                   .models = {"a.ply", "b.ply"}};
+    planned.job = std::move(job);
     planned.after = std::move(after);
     jobs_.push_back(plan_.size());
     plan_.push_back(planned);
   };
-  more(JobKind::kTriplets, "a.ply", {0});
-  more(JobKind::kTriplets, "b.ply", {1});
-  more(JobKind::kPartition, "000.part", {2, 3});
-  more(JobKind::kLibrary, "library.h5", {4});
+  const std::vector<std::string> models = {"a.ply", "b.ply"};
+  more(triplets_job("a.ply", folder_ / "none", "k", folder_.path(), {}), {0});
+  more(triplets_job("b.ply", folder_ / "none", "k", folder_.path(), {}), {1});
+  more(partition_job(0, {.models = models}, folder_.path(), {}), {2, 3});
+  more(library_job({.models = models}, folder_ / "library.h5", folder_.path(), {}), {4});
   plan_[0].up_to_date = true;
   jobs_.erase(jobs_.begin());
-  const auto stages = stages_of(plan_, jobs_, {}, options_, slurm_, folders_);
+  const auto stages = stages_of(plan_, jobs_, options_, slurm_, folders_);
   ASSERT_EQ(stages.size(), 4u);
   EXPECT_EQ(stages[0].array.name, "semigeo-surface");
   EXPECT_EQ(stages[1].array.name, "semigeo-triplets");
@@ -121,9 +122,9 @@ TEST_F(SlurmStageTest, EachKindIsAStageThatWaitsForThoseBeforeIt) {
   // Before its dataset is there, a triplets job is judged by the scan.
   EXPECT_GT(stages[1].array.memory_bytes, 500 * kMegabyte);
   EXPECT_GT(stages[3].array.memory_bytes, 256 * kMegabyte);
-  const Task task = read_task(stages[2].list, 0);
-  EXPECT_EQ(task.jobs[0].job.models, plan_[4].job.models);
-  EXPECT_EQ(task.jobs[0].job.kind, JobKind::kPartition);
+  const Task task = read_task(stages[2].list, 0, all_kinds());
+  EXPECT_EQ(task.jobs[0].job.kind, &partition_kind());
+  EXPECT_EQ(partition_kind().data_to_json(task.jobs[0].job).at("models"), models);
 }
 
 TEST_F(SlurmStageTest, TheScriptIsOfQuotedWords) {

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "io/files/error.hpp"
+#include "tests/jobs/written_text.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace semigeo::jobs {
@@ -40,13 +41,14 @@ TEST(TaskListTest, AreAtMostTenThousandHoweverLong) {
   EXPECT_EQ(std::accumulate(seen.begin(), seen.end(), 0), 30'000);
 }
 
+const JobKinds kKinds({&tests::text_kind()});
+
 JobRequest request(const std::string& name) {
   JobRequest request;
-  request.job.name = name;
+  request.job = tests::text_job(name, "/in", {.text = "three"}).job;
   request.job.input = "/in/\xff" + name;
   request.job.output = "/archive/scans/" + name + ".vtkhdf";
   request.job.key = "key of " + name;
-  request.parameters.surface.levels = 3;
   request.threads = 2;
   request.log = "/archive/logs/" + name + ".log";
   return request;
@@ -74,7 +76,7 @@ TEST_F(TaskFileTest, ATaskFindsItsJobs) {
     tasks.push_back({request("a" + std::to_string(i)), request("b" + std::to_string(i))});
   const fs::path list = write("tasks.jsonl", task_list_text(settings, tasks));
   for (const int number : {0, 1, 11}) {
-    const Task task = read_task(list, number);
+    const Task task = read_task(list, number, kKinds);
     EXPECT_EQ(task.settings, settings);
     ASSERT_EQ(task.jobs.size(), 2u);
     for (std::size_t i = 0; i < 2; ++i)
@@ -83,11 +85,11 @@ TEST_F(TaskFileTest, ATaskFindsItsJobs) {
 }
 
 TEST_F(TaskFileTest, AListThatIsMissingOrDamagedIsAnErrorThatSaysWhere) {
-  EXPECT_THROW(read_task(folder_ / "none", 0), io::Error);
+  EXPECT_THROW(read_task(folder_ / "none", 0, kKinds), io::Error);
   const std::string text = task_list_text({}, {{request("a")}, {request("b")}});
-  EXPECT_THROW(read_task(write("list", text), 2), io::Error);
+  EXPECT_THROW(read_task(write("list", text), 2, kKinds), io::Error);
   try {
-    read_task(write("torn", text.substr(0, text.size() - 20)), 1);
+    read_task(write("torn", text.substr(0, text.size() - 20)), 1, kKinds);
     ADD_FAILURE() << "half a line was read";
   } catch (const io::Error& error) {
     EXPECT_NE(std::string(error.what()).find("line 3"), std::string::npos) << error.what();
@@ -96,35 +98,32 @@ TEST_F(TaskFileTest, AListThatIsMissingOrDamagedIsAnErrorThatSaysWhere) {
 
 TEST_F(TaskFileTest, ResultsComeBackAndDamagedLinesAreNone) {
   TaskResults results;
-  JobOutcome& done = results["a \"quoted\""];
+  results["a \"quoted\""].result = {{"letters", 17}};
+  JobOutcome& done = results["a \"quoted\""].outcome;
   done.state = JobState::kDone;
-  SurfaceJobResult result;
-  result.vertices = 17;
-  done.result = result;
   done.seconds = 2.5;
   done.cpu_seconds = 2;
   done.peak_bytes = 1e9;
   done.threads = 2;
   done.attempts = 1;
-  JobOutcome& failed = results["b"];
+  JobOutcome& failed = results["b"].outcome;
   failed.state = JobState::kFailed;
   failed.error = "b.ply: is no scan";
-  results["c"].state = JobState::kNotRun;
+  results["c"].outcome.state = JobState::kNotRun;
   const std::string text = results_text(results);
   const TaskResults read = read_results(write("results", text + "{\"name\":\"d\""));
   ASSERT_EQ(read.size(), 3u);
-  const JobOutcome& a = read.at("a \"quoted\"");
+  const JobOutcome& a = read.at("a \"quoted\"").outcome;
   EXPECT_EQ(a.state, JobState::kDone);
-  ASSERT_TRUE(std::holds_alternative<SurfaceJobResult>(a.result));
-  EXPECT_EQ(std::get<SurfaceJobResult>(a.result).vertices, 17);
+  EXPECT_EQ(read.at("a \"quoted\"").result.at("letters"), 17);
   EXPECT_EQ(a.seconds, 2.5);
   EXPECT_EQ(a.cpu_seconds, 2);
   EXPECT_EQ(a.peak_bytes, 1e9);
   EXPECT_EQ(a.threads, 2);
   EXPECT_EQ(a.attempts, 1);
-  EXPECT_EQ(read.at("b").state, JobState::kFailed);
-  EXPECT_EQ(read.at("b").error, failed.error);
-  EXPECT_EQ(read.at("c").state, JobState::kNotRun);
+  EXPECT_EQ(read.at("b").outcome.state, JobState::kFailed);
+  EXPECT_EQ(read.at("b").outcome.error, failed.error);
+  EXPECT_EQ(read.at("c").outcome.state, JobState::kNotRun);
   EXPECT_TRUE(read_results(folder_ / "none").empty());
 }
 

@@ -16,7 +16,7 @@
 #include "io/dataset/xdmf.hpp"
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
-#include "jobs/plan/job_key.hpp"
+#include "jobs/kinds/surface.hpp"
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/scan_file.hpp"
 #include "tests/support/shapes.hpp"

@@ -1,0 +1,159 @@
+#include "jobs/kinds/library.hpp"
+
+#include <set>
+#include <utility>
+
+#include "io/files/error.hpp"
+#include "io/files/file_digest.hpp"
+#include "io/library/hash_library.hpp"
+#include "jobs/archive/path_text.hpp"
+#include "jobs/kinds/merging.hpp"
+#include "jobs/kinds/partition.hpp"
+#include "jobs/kinds/triplets.hpp"
+#include "jobs/plan/plan.hpp"
+#include "jobs/plan/typed_job_kind.hpp"
+#include "jobs/stages/library_job.hpp"
+
+namespace semigeo::jobs {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// Raised whenever the same runs and parameters give other bytes.
+static constexpr const char* kVersion = "library 1";
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LibraryJobResult, models, postings, digest)
+
+static void to_json(json& object, const LibraryJobData& data) {
+  object = {{"models", escaped_all(data.models)},
+            {"partitions", data.partitions},
+            {"parameters", json::parse(to_json(data.parameters))}};
+}
+
+static void from_json(const json& object, LibraryJobData& data) {
+  data.models = unescaped_all(object.at("models").get<std::vector<std::string>>());
+  object.at("partitions").get_to(data.partitions);
+  data.parameters = recognition_parameters_from_json(object.at("parameters").dump());
+}
+
+namespace {
+
+std::vector<fs::path> partition_paths(const Job& job, int partitions) {
+  std::vector<fs::path> paths;
+  for (int number = 0; number < partitions; ++number)
+    paths.push_back(partition_path(job.input, number));
+  return paths;
+}
+
+class LibraryKind final : public TypedJobKind<LibraryJobData, LibraryJobResult> {
+ public:
+  const JobWords& words() const override { return words_; }
+
+  std::string read_key(const fs::path& output, KeyCheck) const override {
+    return io::library_key(output);
+  }
+
+  /// The library is made of the models that have runs, and needs every partition of them.
+  bool resolve_inputs(Job& job, OutputKeys& keys) const override {
+    LibraryJobData& library = data(job);
+    const auto run_keys = keep_models_with_runs(library.models, job.input, job.output, keys);
+    job.key = library_key(run_keys, library.parameters);
+    if (is_complete(job)) return true;
+    std::error_code ignored;
+    for (const fs::path& partition : partition_paths(job, library.partitions))
+      if (!fs::exists(partition, ignored))
+        throw io::Error(partition, "", "is missing: " + job.name + " is made of it",
+                        "see why its job failed, and run again");
+    return false;
+  }
+
+  Estimate estimate(const PlannedJob& planned, const EstimateContext& context) const override {
+    return merging_estimate(data(planned.job).models.size(), 1, context.memory_bytes);
+  }
+
+  std::any run(const Job& job, const JobContext& context) const override {
+    const LibraryJobData& library = data(job);
+    return run_library_job({.runs = run_paths(job.input, library.models),
+                            .partitions = partition_paths(job, library.partitions),
+                            .parameters_json = to_json(library.parameters),
+                            .output = job.output,
+                            .key = job.key,
+                            .memory_bytes = buffer_bytes(context.memory_bytes)},
+                           context.engine);
+  }
+
+  std::optional<JobSummary> summary(const Job& job, JobState state) const override {
+    const std::vector<std::string> missing = missing_models(job);
+    const std::size_t models = data(job).models.size() - missing.size();
+    std::string text = "library: " + job.output.string() + ": ";
+    if (is_made(state)) {
+      text += std::to_string(models) + " models";
+      if (state == JobState::kUpToDate) text += ", up to date";
+      for (const std::string& model : missing)
+        text += (&model == &missing.front() ? "; missing: " : ", ") + model;
+    } else {
+      text += name_of(state);
+    }
+    return JobSummary{.text = std::move(text),
+                      .fields = {{"library",
+                                  {{"output", job.output.string()},
+                                   {"state", name_of(state)},
+                                   {"models", models},
+                                   {"missing", missing}}}}};
+  }
+
+  /// Partitions, and runs of other models, serve nobody any more.
+  void clean_up(const Job& job) const override {
+    std::error_code ignored;
+    fs::remove_all(job.input / "partitions", ignored);
+    std::set<fs::path> wanted;
+    for (const std::string& model : data(job).models)
+      wanted.insert(run_path(job.input, model).filename());
+    std::vector<fs::path> spare;
+    for (const auto& entry : fs::directory_iterator(job.input / "triplets", ignored))
+      if (entry.path().extension() == ".run" && !wanted.contains(entry.path().filename()))
+        spare.push_back(entry.path());
+    for (const fs::path& path : spare) fs::remove_all(path, ignored);
+  }
+
+ private:
+  const JobWords words_ = {.kind = "library",
+                           .output = "hash library",
+                           .inputs = "the models",
+                           .plural = "jobs of a library",
+                           .merges_files = true};
+};
+
+}  // namespace
+
+const JobKind& library_kind() {
+  static const LibraryKind kind;
+  return kind;
+}
+
+Job library_job(LibraryJobData data, const fs::path& library, const fs::path& parts,
+                std::span<const std::string> run_keys) {
+  return {.kind = &library_kind(),
+          .name = library.filename().string(),
+          .input = parts,
+          .output = library,
+          .key = library_key(run_keys, data.parameters),
+          .data = std::move(data)};
+}
+
+std::string library_key(std::span<const std::string> run_keys,
+                        const RecognitionParameters& parameters) {
+  std::string text = std::string(kVersion) + '\n' + to_json(parameters);
+  for (const std::string& key : run_keys) text += '\n' + key;
+  return io::xxh3_of_text(text);
+}
+
+std::vector<std::string> missing_models(const Job& library) {
+  std::vector<std::string> missing;
+  std::error_code ignored;
+  for (const std::string& model : LibraryKind::data(library).models)
+    if (!fs::exists(run_path(library.input, model), ignored)) missing.push_back(model);
+  return missing;
+}
+
+}  // namespace semigeo::jobs

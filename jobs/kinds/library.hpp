@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "jobs/plan/job_kind.hpp"
+#include "jobs/stages/recognition_parameters.hpp"
+
+namespace semigeo::jobs {
+
+/// What a library job knows besides its head: runs and partitions become a hash library. The input
+/// of its head is the folder of the library's parts.
+struct LibraryJobData {
+  std::vector<std::string> models = {};  ///< Names of all models, sorted.
+  int partitions = 0;                    ///< How many partitions there are.
+  RecognitionParameters parameters = {};
+};
+
+/// The kind whose jobs make one hash library (jobs/stages/library_job.hpp). The data of its jobs is
+/// a LibraryJobData, their result a LibraryJobResult.
+const JobKind& library_kind();
+
+/// Returns the job that makes a library. `run_keys` are the keys of the models' runs.
+Job library_job(LibraryJobData data, const std::filesystem::path& library,
+                const std::filesystem::path& parts, std::span<const std::string> run_keys);
+
+/// Returns the key of the library of these runs, in the order of the names of their models.
+std::string library_key(std::span<const std::string> run_keys,
+                        const RecognitionParameters& parameters);
+
+/// Returns the models of a planned library that have no run: the library does not hold them.
+std::vector<std::string> missing_models(const Job& library);
+
+}  // namespace semigeo::jobs

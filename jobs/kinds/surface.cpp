@@ -1,0 +1,275 @@
+#include "jobs/kinds/surface.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "io/dataset/dataset.hpp"
+#include "io/dataset/xdmf.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/error.hpp"
+#include "io/files/file_digest.hpp"
+#include "jobs/archive/scan_size.hpp"
+#include "jobs/plan/plan.hpp"
+#include "jobs/plan/typed_job_kind.hpp"
+#include "jobs/stages/surface_job.hpp"
+
+namespace semigeo::jobs {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// Raised whenever the same scan and parameters give other bytes.
+static constexpr const char* kVersion = "surface 10";
+
+/// Names every number and word of a result, for writing and for reading alike.
+template <typename Visit>
+static void each_field(SurfaceJobResult& r, const Visit& visit) {
+  visit("format", r.format);
+  visit("vertices", r.vertices);
+  visit("triangles", r.triangles);
+  visit("parts", r.parts);
+  visit("levels", r.levels);
+  visit("vanished", r.vanished);
+  visit("welded_vertices", r.repairs.welded_vertices);
+  visit("degenerate_faces", r.repairs.degenerate_faces);
+  visit("duplicate_faces", r.repairs.duplicate_faces);
+  visit("flipped_faces", r.repairs.flipped_faces);
+  visit("nonmanifold_faces", r.repairs.nonmanifold_faces);
+  visit("split_vertices", r.repairs.split_vertices);
+  visit("isolated_vertices", r.repairs.isolated_vertices);
+  visit("holes_loops", r.preparation.holes.loops);
+  visit("holes_filled", r.preparation.holes.filled);
+  visit("holes_outer", r.preparation.holes.outer);
+  visit("holes_too_long", r.preparation.holes.too_long);
+  visit("holes_unsplittable", r.preparation.holes.unsplittable);
+  visit("filled_vertices", r.preparation.filled_vertices);
+  visit("filled_faces", r.preparation.filled_faces);
+  visit("removed_vertices", r.preparation.removed_vertices);
+  visit("removed_faces", r.preparation.removed_faces);
+  visit("tolerance", r.preparation.tolerance);
+  visit("distance_maximum", r.preparation.distance.maximum);
+  visit("distance_sum", r.preparation.distance.sum);
+  visit("distance_count", r.preparation.distance.count);
+  visit("flipped", r.remeshed.flipped);
+  visit("split", r.remeshed.split);
+  visit("collapsed", r.remeshed.collapsed);
+  visit("torn", r.remeshed.torn);
+  visit("inserted", r.remeshed.inserted);
+  visit("removed", r.remeshed.removed);
+  visit("dropped_parts", r.remeshed.dropped_parts);
+  visit("dropped_faces", r.remeshed.dropped_faces);
+}
+
+static void to_json(json& object, const SurfaceJobResult& result) {
+  SurfaceJobResult copy = result;
+  object = json::object();
+  each_field(copy, [&](const char* name, const auto& value) { object[name] = value; });
+}
+
+static void from_json(const json& object, SurfaceJobResult& result) {
+  each_field(result, [&](const char* name, auto& value) { object.at(name).get_to(value); });
+}
+
+static void to_json(json& object, const SurfaceJobData& data) {
+  object = {{"input_name", data.input_name},
+            {"input_xxh3", data.input_xxh3},
+            {"parameters", json::parse(to_json(data.parameters))},
+            {"sidecar_only", data.sidecar_only}};
+}
+
+static void from_json(const json& object, SurfaceJobData& data) {
+  object.at("input_name").get_to(data.input_name);
+  object.at("input_xxh3").get_to(data.input_xxh3);
+  data.parameters = surface_parameters_from_json(object.at("parameters").dump());
+  object.at("sidecar_only").get_to(data.sidecar_only);
+}
+
+namespace {
+
+/// Returns "3 welded vertices, 1 split vertices"; empty if nothing was repaired.
+std::string in_words(const kernels::SurfaceRepairs& repairs) {
+  std::string text;
+  const json counts = json::parse(to_json(repairs));
+  for (const auto& [name, count] : counts.items()) {
+    if (count.get<std::int64_t>() == 0) continue;
+    std::string words = name;
+    std::ranges::replace(words, '_', ' ');
+    text += (text.empty() ? "" : ", ") + count.dump() + " " + words;
+  }
+  return text;
+}
+
+std::string in_words(const kernels::HoleCounts& holes) {
+  std::string left;
+  const auto add = [&](std::int64_t count, const char* reason) {
+    if (count > 0) left += (left.empty() ? "" : ", ") + std::to_string(count) + " " + reason;
+  };
+  add(holes.outer, "outer");
+  add(holes.too_long, "too long");
+  add(holes.unsplittable, "without a valid split");
+  return std::to_string(holes.filled) + " of " + std::to_string(holes.loops) + " holes filled" +
+         (left.empty() ? "" : " (left: " + left + ")");
+}
+
+std::string in_words(const PreparationResult& preparation) {
+  std::string text = preparation.holes.loops > 0 ? in_words(preparation.holes) : "";
+  if (preparation.removed_vertices > 0) {
+    char distance[64];
+    std::snprintf(distance, sizeof distance, "%.3g", preparation.distance.maximum);
+    text += (text.empty() ? "" : ", ") + std::to_string(preparation.removed_vertices) +
+            " vertices removed, at most " + distance + " from what is left";
+  }
+  return text.empty() ? "nothing to do" : text;
+}
+
+/// Returns what became of a surface on its way through the levels, if it is worth a word.
+std::string evolution_in_words(const SurfaceJobResult& result) {
+  std::string text;
+  const auto add = [&text](std::int64_t count, const char* one, const char* more) {
+    if (count == 0) return;
+    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + (count == 1 ? one : more);
+  };
+  add(result.remeshed.torn, "neck torn", "necks torn");
+  add(result.remeshed.dropped_parts, "part lost", "parts lost");
+  if (result.vanished)
+    text +=
+        (text.empty() ? "" : "; ") + std::string("too thin for so many levels: it has vanished");
+  return text;
+}
+
+/// Returns whether the sidecar could be made; if not, the dataset must be made, too.
+bool remake_sidecar(const Job& job) {
+  std::string text;
+  try {
+    text = io::sidecar_text(job.output);
+  } catch (const io::Error&) {
+    return false;
+  }
+  io::write_file_atomically(io::sidecar_of(job.output), text);
+  return true;
+}
+
+class SurfaceKind final : public TypedJobKind<SurfaceJobData, SurfaceJobResult> {
+ public:
+  const JobWords& words() const override { return words_; }
+
+  std::string read_key(const fs::path& output, KeyCheck) const override {
+    return io::read_origin(output).job_key;
+  }
+
+  bool has_all_outputs(const Job& job) const override {
+    std::error_code ignored;
+    return fs::exists(io::sidecar_of(job.output), ignored);
+  }
+
+  void discard_output(const Job& job) const override {
+    std::error_code ignored;
+    fs::remove(data(job).sidecar_only ? io::sidecar_of(job.output) : job.output, ignored);
+  }
+
+  std::vector<ExternalFile> external_files(const PlannedJob& planned) const override {
+    return {{.kind = "scan", .path = planned.scan, .is_readable = is_readable(planned)}};
+  }
+
+  Estimate estimate(const PlannedJob& planned, const EstimateContext& context) const override {
+    const SurfaceJobData& surface = data(planned.job);
+    if (surface.sidecar_only) return {};
+    return context.learned.of(scan_size(planned.job.input), surface.parameters.levels + 1, 1);
+  }
+
+  std::uintmax_t bytes_to_read(const Job& job) const override {
+    if (data(job).sidecar_only) return 0;
+    std::error_code error;
+    const auto size = fs::file_size(job.input, error);
+    return error ? 0 : size;
+  }
+
+  std::any run(const Job& job, const JobContext& context) const override {
+    const SurfaceJobData& surface = data(job);
+    if (surface.sidecar_only && remake_sidecar(job)) return {};
+    return run_surface_job({.input = job.input,
+                            .input_name = surface.input_name,
+                            .name = job.name,
+                            .output = job.output,
+                            .input_xxh3 = surface.input_xxh3,
+                            .key = job.key},
+                           surface.parameters, context.engine);
+  }
+
+  std::int64_t vertex_levels(const std::any& value) const override {
+    const SurfaceJobResult* made = result(value);
+    return made == nullptr ? 0 : made->vertices * made->levels;
+  }
+
+  void describe(const Job& job, const std::any& value, JobEnded& event) const override {
+    if (!data(job).sidecar_only) {
+      ScanSize size = scan_size(job.input);
+      event.format = std::move(size.format);
+      event.input_bytes = static_cast<std::int64_t>(size.bytes);
+    }
+    if (const SurfaceJobResult* made = result(value)) {
+      event.vertices = made->vertices;
+      event.levels = made->levels;
+    }
+  }
+
+  JobReport report(const Job& job, const std::any& value) const override {
+    const SurfaceJobResult& made = *result(value);
+    const PreparationOptions& wanted = data(job).parameters.preparation;
+    JobReport report;
+    report.fields = {{"format", made.format},
+                     {"vertices", made.vertices},
+                     {"triangles", made.triangles},
+                     {"parts", made.parts},
+                     {"levels", made.levels},
+                     {"repairs", json::parse(to_json(made.repairs))},
+                     {"preparation", json::parse(to_json(made.preparation, wanted))},
+                     {"vanished", made.vanished},
+                     {"remeshing", json::parse(to_json(made.remeshed))}};
+    if (made.repairs != kernels::SurfaceRepairs{})
+      report.lines.emplace_back("repaired", in_words(made.repairs));
+    if (made.preparation != PreparationResult{})
+      report.lines.emplace_back("prepared", in_words(made.preparation));
+    if (std::string words = evolution_in_words(made); !words.empty())
+      report.lines.emplace_back("evolved", std::move(words));
+    return report;
+  }
+
+  bool remember(const Job& job, DigestCache& cache) const override {
+    cache.dataset_keys(job.name);
+    return true;
+  }
+
+ private:
+  const JobWords words_ = {.kind = "surface",
+                           .output = "dataset",
+                           .inputs = "the scan",
+                           .plural = "scans",
+                           .kill_remedy = " or leave the scan out",
+                           .memory_remedy = ", or decimate the scan",
+                           .stands_for_scan = true,
+                           .headings = {"repaired", "prepared", "evolved"}};
+};
+
+}  // namespace
+
+const JobKind& surface_kind() {
+  static const SurfaceKind kind;
+  return kind;
+}
+
+const SurfaceJobData& surface_data(const Job& job) {
+  return SurfaceKind::data(job);
+}
+
+SurfaceJobData& surface_data(Job& job) {
+  return SurfaceKind::data(job);
+}
+
+std::string surface_key(const std::string& name, const std::string& input_xxh3,
+                        const std::string& parameters_json) {
+  return io::xxh3_of_text(std::string(kVersion) + '\n' + parameters_json + '\n' + name + '\n' +
+                          input_xxh3);
+}
+
+}  // namespace semigeo::jobs

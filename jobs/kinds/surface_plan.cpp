@@ -1,0 +1,140 @@
+#include "jobs/kinds/surface_plan.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "io/dataset/dataset.hpp"
+#include "io/dataset/xdmf.hpp"
+#include "io/files/error.hpp"
+#include "io/files/utf8.hpp"
+#include "jobs/archive/sources.hpp"
+#include "jobs/archive/verification.hpp"
+#include "jobs/kinds/surface.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+using Kind = Reason::Kind;
+
+/// What differs between what a dataset was made of and what the job would make it of.
+std::vector<Reason> differences(const io::DatasetOrigin& origin, const Job& job,
+                                const std::string& parameters_json) {
+  std::vector<Reason> reasons;
+  const std::string& input_xxh3 = surface_data(job).input_xxh3;
+  if (origin.input_xxh3 != input_xxh3)
+    reasons.push_back({.kind = Kind::kScan, .before = origin.input_xxh3, .now = input_xxh3});
+  std::ranges::move(parameter_differences(origin.parameters_json, parameters_json),
+                    std::back_inserter(reasons));
+  // What this program would have called the same thing says whether it would have made the same.
+  if (origin.job_key != surface_key(job.name, origin.input_xxh3, origin.parameters_json))
+    reasons.push_back({.kind = Kind::kProgram, .before = origin.creator_version});
+  return reasons;
+}
+
+std::vector<Reason> reasons_of_dataset(const Job& job, const std::string& parameters_json) {
+  try {
+    return differences(io::read_origin(job.output), job, parameters_json);
+  } catch (const io::Error& error) {
+    return {{.kind = Kind::kUnusableDataset, .now = error.problem()}};
+  }
+}
+
+/// Compares the dataset in the archive, if there is one, with what the job would make.
+void judge_dataset(PlannedJob& planned, const std::string& parameters_json, DigestCache& cache) {
+  const Job& job = planned.job;
+  std::error_code ignored;
+  if (!fs::exists(job.output, ignored)) {
+    planned.reasons = {{.kind = Kind::kNoDataset}};
+  } else if (const auto keys = cache.dataset_keys(job.name); !keys || keys->job_key != job.key) {
+    planned.reasons = reasons_of_dataset(job, parameters_json);
+  } else if (!fs::exists(io::sidecar_of(job.output), ignored)) {
+    planned.reasons = {{.kind = Kind::kNoSidecar}};
+    surface_data(planned.job).sidecar_only = true;
+  } else {
+    planned.up_to_date = true;
+  }
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Whether the sidecar says what it must, of a dataset that is whole.
+bool sidecar_is_right(const fs::path& dataset) {
+  return text_of(io::sidecar_of(dataset)) == io::sidecar_text(dataset);
+}
+
+}  // namespace
+
+std::vector<PlannedJob> plan_surfaces(const fs::path& archive, const std::vector<FoundScan>& scans,
+                                      const SurfaceParameters& parameters, DigestCache& cache,
+                                      int threads) {
+  std::vector<PlannedJob> plan(scans.size());
+  std::vector<Unnamed> unnamed;
+  std::vector<ScanDigest> digests = cache.scan_digests(scans, threads);
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    PlannedJob& planned = plan[i];
+    planned.job.kind = &surface_kind();
+    planned.job.input = scans[i].input;
+    planned.job.data = SurfaceJobData{.input_name = io::as_utf8(scans[i].relative),
+                                      .input_xxh3 = digests[i].xxh3,
+                                      .parameters = parameters};
+    planned.scan = scans[i].file;
+    planned.error = std::move(digests[i].error);
+    planned.inputs_are_there = true;
+    unnamed.push_back({scans[i].name, scans[i].file, std::move(digests[i].xxh3)});
+  }
+  const auto names = choose_names(unnamed, Sources::read(archive),
+                                  [&](const std::string& name, const std::string& xxh3) {
+                                    const auto keys = cache.dataset_keys(name);
+                                    return keys && keys->input_xxh3 == xxh3;
+                                  });
+  const std::string parameters_json = to_json(parameters);
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    Job& job = plan[i].job;
+    job.name = names[i];
+    job.output = dataset_path(archive, job.name);
+    job.key = surface_key(job.name, surface_data(job).input_xxh3, parameters_json);
+    if (is_readable(plan[i])) judge_dataset(plan[i], parameters_json, cache);
+  }
+  return plan;
+}
+
+void verify_surfaces(std::vector<PlannedJob>& plan, int at_once) {
+  std::vector<PlannedJob*> jobs;
+  std::vector<fs::path> datasets;
+  for (PlannedJob& planned : plan) {
+    if (planned.job.kind != &surface_kind()) continue;
+    if (!planned.up_to_date && !surface_data(planned.job).sidecar_only) continue;
+    jobs.push_back(&planned);
+    datasets.push_back(planned.job.output);
+  }
+  const std::vector<std::string> problems = verify_datasets(datasets, at_once);
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    PlannedJob& planned = *jobs[i];
+    if (!problems[i].empty()) {
+      planned.reasons = {{.kind = Kind::kDamagedArrays, .now = problems[i]}};
+      surface_data(planned.job).sidecar_only = false;
+    } else if (planned.up_to_date && !sidecar_is_right(datasets[i])) {
+      planned.reasons = {{.kind = Kind::kDamagedSidecar}};
+      surface_data(planned.job).sidecar_only = true;
+    } else {
+      continue;
+    }
+    planned.up_to_date = false;
+  }
+}
+
+void record_sources(const fs::path& archive, const std::vector<PlannedJob>& plan) {
+  Sources sources = Sources::read(archive);
+  for (const PlannedJob& planned : plan)
+    if (planned.job.kind == &surface_kind() && is_readable(planned))
+      sources.claim(planned.job.name, planned.scan);
+  sources.write(archive);
+}
+
+}  // namespace semigeo::jobs

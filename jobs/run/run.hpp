@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "jobs/archive/digest_cache.hpp"
+#include "jobs/run/execution.hpp"
+#include "jobs/run/job_outcome.hpp"
+#include "jobs/run/runner.hpp"
+
+namespace semigeo::jobs {
+
+/// Counts and costs of a run, for its last line.
+struct RunSummary {
+  std::int64_t done = 0;
+  std::int64_t up_to_date = 0;
+  std::int64_t failed = 0;
+  std::int64_t skipped = 0;  ///< Jobs whose inputs are missing because others have failed.
+  std::int64_t not_run = 0;
+  std::int64_t vertex_levels = 0;
+  double wall_seconds = 0;
+  double cpu_seconds = 0;
+  double peak_bytes = 0;
+  double rate() const {
+    return wall_seconds > 0 ? static_cast<double>(vertex_levels) / wall_seconds : 0;
+  }
+};
+
+/// What a run is told.
+struct RunSettings {
+  /// Folder that has the lock, the journal, the logs and what was learned.
+  std::filesystem::path home;
+  std::string program_version;  ///< For the journal.
+  int threads = 0;              ///< For the journal; 0: one per core.
+  bool verify = false;          ///< What is to be verified is not taken from the digest cache.
+  bool is_archive = true;  ///< The home has scans: what was learned of them is kept.
+  bool is_kept = true;     ///< Others know the home; if not, there is neither lock nor journal.
+};
+
+/// What a run asks whoever starts it.
+struct RunHooks {
+  /// Makes the plan. It reads only, and is called when the home belongs to the run.
+  std::function<std::vector<PlannedJob>(DigestCache&)> plan;
+  /// Prepares the home before jobs run; called only if the home can be written.
+  std::function<void(const std::vector<PlannedJob>&)> prepare = {};
+  /// Is told the plan before the jobs run.
+  std::function<void(const std::vector<PlannedJob>&)> planned = {};
+  /// Returns the runner of the jobs, which must live as long as the run.
+  std::function<Runner&(const std::vector<PlannedJob>&)> runner;
+  /// Returns the options of the execution; called after the lock is taken, as the home may have
+  /// learned meanwhile.
+  std::function<ExecutionOptions()> options;
+  /// Is told, in one sentence each, what went wrong without being a failure of the run.
+  std::function<void(const std::string&)> warn;
+};
+
+struct RunResult {
+  std::vector<PlannedJob> plan;
+  std::vector<JobOutcome> outcomes;  ///< outcomes[i] belongs to plan[i].
+  RunSummary summary;
+};
+
+/// Makes a plan and executes it: takes the lock of the home, plans, opens the journal, executes the
+/// jobs, learns for the next run, and cleans up. Throws LockedError if another run has the home,
+/// and io::Error if the home cannot be written although jobs have to run. Where nothing has to run
+/// a home that cannot be written is no failure.
+RunResult perform_run(const RunSettings& settings, const RunHooks& hooks,
+                      const RunClock& clock = steady_clock());
+
+}  // namespace semigeo::jobs
