@@ -48,7 +48,8 @@ void add_job(CLI::App& app, int& exit_code) {
   command->callback([task, &exit_code] {
     if (!task->list.empty()) {
       const auto program = std::filesystem::read_symlink("/proc/self/exe");
-      exit_code = run_task(task->list, task->number, program, all_kinds()) ? kAllDone : kStoppedEarly;
+      exit_code =
+          run_task(task->list, task->number, program, all_kinds()) ? kAllDone : kStoppedEarly;
       return;
     }
     const bool told = fcntl(kAnswers, F_GETFD) != -1;

@@ -80,8 +80,7 @@ Models kept_models(const LibraryPlace& place, const RecognitionParameters& param
   for (const io::ModelInfo& info : library.models()) {
     const fs::path run = run_path(place.parts, info.name);
     if (output_key(triplets_kind(), run, KeyCheck::kWhole).empty())
-      throw io::Error(run, "", "is missing or damaged: the triplets of " + info.name,
-                      kRemedy);
+      throw io::Error(run, "", "is missing or damaged: the triplets of " + info.name, kRemedy);
     models[info.name] = {.name = info.name};
   }
   return models;

@@ -2,8 +2,8 @@
 
 #include <cstddef>
 
-#include "jobs/run/run.hpp"
 #include "jobs/kinds/recognise_plan.hpp"
+#include "jobs/run/run.hpp"
 
 namespace semigeo::jobs::cli {
 
@@ -13,8 +13,8 @@ struct RecogniseReport {
   bool has_files = true;  ///< The files stay, so that their paths are of use.
 };
 
-/// Prints on stdout for each scene its objects with their poses and the first models of the ranking;
-/// then failures and totals.
+/// Prints on stdout for each scene its objects with their poses and the first models of the
+/// ranking; then failures and totals.
 void print_recognised(const RunResult& result, const SearchedLibrary& library,
                       const RecogniseReport& report);
 

@@ -75,8 +75,9 @@ void print_counts(const std::vector<const PlannedJob*>& plan) {
   const auto unreadable =
       std::ranges::count_if(plan, [](const PlannedJob* planned) { return !is_readable(*planned); });
   const auto all = static_cast<long long>(plan.size());
-  std::printf("%lld %s: %lld would run, %lld up to date", all, plan.front()->job.kind->words().plural.c_str(),
-              all - up_to_date - unreadable, static_cast<long long>(up_to_date));
+  std::printf("%lld %s: %lld would run, %lld up to date", all,
+              plan.front()->job.kind->words().plural.c_str(), all - up_to_date - unreadable,
+              static_cast<long long>(up_to_date));
   if (unreadable > 0) std::printf(", %lld cannot be read", static_cast<long long>(unreadable));
   std::printf("\n");
 }

@@ -9,8 +9,8 @@
 namespace semigeo::jobs {
 
 const JobKinds& all_kinds() {
-  static const JobKinds kinds({&surface_kind(), &triplets_kind(), &partition_kind(),
-                               &library_kind(), &recognise_kind()});
+  static const JobKinds kinds(
+      {&surface_kind(), &triplets_kind(), &partition_kind(), &library_kind(), &recognise_kind()});
   return kinds;
 }
 

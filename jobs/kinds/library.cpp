@@ -27,13 +27,13 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LibraryJobResult, models, postings, digest)
 static void to_json(json& object, const LibraryJobData& data) {
   object = {{"models", escaped_all(data.models)},
             {"partitions", data.partitions},
-            {"parameters", json::parse(to_json(data.parameters))}};
+            {"parameters", json_of(data.parameters)}};
 }
 
 static void from_json(const json& object, LibraryJobData& data) {
   data.models = unescaped_all(object.at("models").get<std::vector<std::string>>());
   object.at("partitions").get_to(data.partitions);
-  data.parameters = recognition_parameters_from_json(object.at("parameters").dump());
+  data.parameters = recognition_parameters_from_json(object.at("parameters"));
 }
 
 namespace {
@@ -75,7 +75,7 @@ class LibraryKind final : public TypedJobKind<LibraryJobData, LibraryJobResult> 
     const LibraryJobData& library = data(job);
     return run_library_job({.runs = run_paths(job.input, library.models),
                             .partitions = partition_paths(job, library.partitions),
-                            .parameters_json = to_json(library.parameters),
+                            .parameters = json_of(library.parameters),
                             .output = job.output,
                             .key = job.key,
                             .memory_bytes = buffer_bytes(context.memory_bytes)},

@@ -120,9 +120,8 @@ void plan_library(std::vector<PlannedJob>& plan, const std::vector<LibraryModel>
   const std::vector<io::ShapeRange> shapes = partition_shapes(std::ssize(keys));
   const auto partitions = static_cast<int>(shapes.size());
   PlannedJob library;
-  library.job =
-      library_job({.models = names, .partitions = partitions, .parameters = parameters},
-                  place.library, place.parts, keys);
+  library.job = library_job({.models = names, .partitions = partitions, .parameters = parameters},
+                            place.library, place.parts, keys);
   judge_output(library);
   // While the library is what it should be, nobody is going to read its runs.
   for (const std::size_t triplets : after)

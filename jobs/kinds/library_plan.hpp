@@ -15,8 +15,9 @@ namespace semigeo::jobs {
 /// The files and folders of a library.
 struct LibraryPlace {
   std::filesystem::path library;
-  std::filesystem::path parts;  ///< Folder of the runs, and of partitions while the library is made.
-  std::filesystem::path home;   ///< Folder that has the lock, the journal and the logs.
+  std::filesystem::path
+      parts;                   ///< Folder of the runs, and of partitions while the library is made.
+  std::filesystem::path home;  ///< Folder that has the lock, the journal and the logs.
 };
 
 /// Returns the place of a library. ARCHIVE/library.h5 has its parts in ARCHIVE/library, and the

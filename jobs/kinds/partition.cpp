@@ -27,7 +27,7 @@ static void to_json(json& object, const PartitionJobData& data) {
             {"shapes", {data.shapes.first, data.shapes.end}},
             {"partitions", data.partitions},
             {"library", escaped(data.library.string())},
-            {"parameters", json::parse(to_json(data.parameters))}};
+            {"parameters", json_of(data.parameters)}};
 }
 
 static void from_json(const json& object, PartitionJobData& data) {
@@ -36,7 +36,7 @@ static void from_json(const json& object, PartitionJobData& data) {
   object.at("shapes").at(1).get_to(data.shapes.end);
   object.at("partitions").get_to(data.partitions);
   data.library = unescaped(object.at("library").get<std::string>());
-  data.parameters = recognition_parameters_from_json(object.at("parameters").dump());
+  data.parameters = recognition_parameters_from_json(object.at("parameters"));
 }
 
 namespace {
@@ -49,16 +49,16 @@ class PartitionKind final : public TypedJobKind<PartitionJobData, PartitionJobRe
     return io::posting_partition_key(output);
   }
 
-  /// The partition is made of the models that have runs. It is not needed if their library is there.
+  /// The partition is made of the models that have runs. It is not needed if their library is
+  /// there.
   bool resolve_inputs(Job& job, OutputKeys& keys) const override {
     PartitionJobData& partition = data(job);
     const auto run_keys = keep_models_with_runs(partition.models, job.input, job.output, keys);
     job.key = partition_key(run_keys, partition.shapes);
-    return is_complete(job) ||
-           is_complete(library_job({.models = {},
-                                    .partitions = partition.partitions,
-                                    .parameters = partition.parameters},
-                                   partition.library, job.input, run_keys));
+    return is_complete(job) || is_complete(library_job({.models = {},
+                                                        .partitions = partition.partitions,
+                                                        .parameters = partition.parameters},
+                                                       partition.library, job.input, run_keys));
   }
 
   Estimate estimate(const PlannedJob& planned, const EstimateContext& context) const override {

@@ -21,8 +21,9 @@ struct PartitionJobData {
   RecognitionParameters parameters = {};
 };
 
-/// The kind whose jobs make one partition of the runs of all models (jobs/stages/partition_job.hpp).
-/// The data of its jobs is a PartitionJobData, their result a PartitionJobResult.
+/// The kind whose jobs make one partition of the runs of all models
+/// (jobs/stages/partition_job.hpp). The data of its jobs is a PartitionJobData, their result a
+/// PartitionJobResult.
 const JobKind& partition_kind();
 
 /// Returns the job that makes partition `number`. `run_keys` are the keys of the models' runs.

@@ -25,8 +25,8 @@ static void to_json(json& object, const RecogniseJobData& data) {
             {"input_xxh3", data.input_xxh3},
             {"library", escaped(data.library.string())},
             {"library_digest", data.library_digest},
-            {"parameters", json::parse(to_json(data.parameters))},
-            {"search", json::parse(to_json(data.search))}};
+            {"parameters", json_of(data.parameters)},
+            {"search", json_of(data.search)}};
 }
 
 static void from_json(const json& object, RecogniseJobData& data) {
@@ -34,8 +34,8 @@ static void from_json(const json& object, RecogniseJobData& data) {
   object.at("input_xxh3").get_to(data.input_xxh3);
   data.library = unescaped(object.at("library").get<std::string>());
   object.at("library_digest").get_to(data.library_digest);
-  data.parameters = recognition_parameters_from_json(object.at("parameters").dump());
-  data.search = search_parameters_from_json(object.at("search").dump());
+  data.parameters = recognition_parameters_from_json(object.at("parameters"));
+  data.search = search_parameters_from_json(object.at("search"));
 }
 
 namespace {
@@ -69,9 +69,8 @@ class RecogniseKind final : public TypedJobKind<RecogniseJobData, RecogniseJobRe
     std::error_code error;
     Estimate estimate;
     if (fs::exists(scene, error))
-      estimate = io::scan_format(scene)
-                     ? context.learned.of(scan_size(scene), levels, 1)
-                     : estimate_of_dataset(scene, levels, context.learned);
+      estimate = io::scan_format(scene) ? context.learned.of(scan_size(scene), levels, 1)
+                                        : estimate_of_dataset(scene, levels, context.learned);
     const auto library = static_cast<double>(fs::file_size(recognise.library, error));
     if (error) return estimate;
     const bool thesis = recognise.search.method == RecognitionMethod::kThesis;

@@ -73,14 +73,14 @@ static void from_json(const json& object, SurfaceJobResult& result) {
 static void to_json(json& object, const SurfaceJobData& data) {
   object = {{"input_name", data.input_name},
             {"input_xxh3", data.input_xxh3},
-            {"parameters", json::parse(to_json(data.parameters))},
+            {"parameters", json_of(data.parameters)},
             {"sidecar_only", data.sidecar_only}};
 }
 
 static void from_json(const json& object, SurfaceJobData& data) {
   object.at("input_name").get_to(data.input_name);
   object.at("input_xxh3").get_to(data.input_xxh3);
-  data.parameters = surface_parameters_from_json(object.at("parameters").dump());
+  data.parameters = surface_parameters_from_json(object.at("parameters"));
   object.at("sidecar_only").get_to(data.sidecar_only);
 }
 
@@ -89,7 +89,7 @@ namespace {
 /// Returns "3 welded vertices, 1 split vertices"; empty if nothing was repaired.
 std::string in_words(const kernels::SurfaceRepairs& repairs) {
   std::string text;
-  const json counts = json::parse(to_json(repairs));
+  const json counts = json_of(repairs);
   for (const auto& [name, count] : counts.items()) {
     if (count.get<std::int64_t>() == 0) continue;
     std::string words = name;
@@ -222,10 +222,10 @@ class SurfaceKind final : public TypedJobKind<SurfaceJobData, SurfaceJobResult> 
                      {"triangles", made.triangles},
                      {"parts", made.parts},
                      {"levels", made.levels},
-                     {"repairs", json::parse(to_json(made.repairs))},
-                     {"preparation", json::parse(to_json(made.preparation, wanted))},
+                     {"repairs", json_of(made.repairs)},
+                     {"preparation", json_of(made.preparation, wanted)},
                      {"vanished", made.vanished},
-                     {"remeshing", json::parse(to_json(made.remeshed))}};
+                     {"remeshing", json_of(made.remeshed)}};
     if (made.repairs != kernels::SurfaceRepairs{})
       report.lines.emplace_back("repaired", in_words(made.repairs));
     if (made.preparation != PreparationResult{})

@@ -20,11 +20,11 @@ static constexpr const char* kVersion = "triplets 1";
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TripletsJobResult, features, samples, triplets)
 
 static void to_json(json& object, const TripletsJobData& data) {
-  object = {{"parameters", json::parse(to_json(data.parameters))}};
+  object = {{"parameters", json_of(data.parameters)}};
 }
 
 static void from_json(const json& object, TripletsJobData& data) {
-  data.parameters = recognition_parameters_from_json(object.at("parameters").dump());
+  data.parameters = recognition_parameters_from_json(object.at("parameters"));
 }
 
 namespace {
@@ -78,10 +78,8 @@ class TripletsKind final : public TypedJobKind<TripletsJobData, TripletsJobResul
   }
 
  private:
-  const JobWords words_ = {.kind = "triplets",
-                           .output = "run",
-                           .inputs = "the dataset",
-                           .plural = "jobs of a library"};
+  const JobWords words_ = {
+      .kind = "triplets", .output = "run", .inputs = "the dataset", .plural = "jobs of a library"};
 };
 
 }  // namespace

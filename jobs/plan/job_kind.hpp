@@ -25,14 +25,14 @@ struct PlannedJob;
 
 /// The words in which messages, files and graphs speak of the jobs of one kind.
 struct JobWords {
-  std::string kind;                 ///< "surface": names the kind everywhere.
-  std::string output;               ///< "dataset": what the output is called.
-  std::string inputs;               ///< "the scan": everything that the output is made of.
-  std::string plural;               ///< "scans": what many jobs of the kind are called.
-  std::string kill_remedy = {};     ///< " or leave the scan out": follows "run again".
-  std::string memory_remedy = {};   ///< ", or decimate the scan": follows "give more memory".
-  bool stands_for_scan = false;     ///< Users know the job by its name alone.
-  bool merges_files = false;        ///< The job makes one file of many.
+  std::string kind;                ///< "surface": names the kind everywhere.
+  std::string output;              ///< "dataset": what the output is called.
+  std::string inputs;              ///< "the scan": everything that the output is made of.
+  std::string plural;              ///< "scans": what many jobs of the kind are called.
+  std::string kill_remedy = {};    ///< " or leave the scan out": follows "run again".
+  std::string memory_remedy = {};  ///< ", or decimate the scan": follows "give more memory".
+  bool stands_for_scan = false;    ///< Users know the job by its name alone.
+  bool merges_files = false;       ///< The job makes one file of many.
   std::vector<std::string> headings = {};  ///< Of the lines of its reports, in their order.
 };
 
@@ -58,8 +58,9 @@ struct ExternalFile {
 
 /// What a run tells about one job that is done.
 struct JobReport {
-  std::vector<std::pair<std::string, nlohmann::json>> fields;      ///< Members of its JSON object.
-  std::vector<std::pair<std::string, std::string>> lines;  ///< Headings and texts, at most one each.
+  std::vector<std::pair<std::string, nlohmann::json>> fields;  ///< Members of its JSON object.
+  std::vector<std::pair<std::string, std::string>>
+      lines;  ///< Headings and texts, at most one each.
 };
 
 /// What a run tells at its end about a job, whatever has become of it.

@@ -33,9 +33,8 @@ void judge_output(PlannedJob& planned, KeyCheck check) {
 
 void plan_again(PlannedJob& planned, const std::string& problem) {
   planned.up_to_date = false;
-  planned.reasons = {{.kind = Kind::kDamagedOutput,
-                      .before = planned.job.kind->words().output,
-                      .now = problem}};
+  planned.reasons = {
+      {.kind = Kind::kDamagedOutput, .before = planned.job.kind->words().output, .now = problem}};
 }
 
 void remove_damaged_outputs(const std::vector<PlannedJob>& plan) {

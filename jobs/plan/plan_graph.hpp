@@ -26,8 +26,8 @@ std::vector<GraphNode> graph_of(const std::vector<PlannedJob>& plan);
 /// Returns the graph as JSON: {"nodes": [{"id", "kind", "name", "state", "dependencies"}]}.
 std::string to_json(const std::vector<GraphNode>& graph);
 
-/// Returns the graph in the language of Graphviz: files are notes, jobs are boxes, and what is up to
-/// date has a dashed outline.
+/// Returns the graph in the language of Graphviz: files are notes, jobs are boxes, and what is up
+/// to date has a dashed outline.
 std::string to_dot(const std::vector<GraphNode>& graph);
 
 }  // namespace semigeo::jobs

@@ -20,9 +20,7 @@ class TypedJobKind : public JobKind {
   static const Result* result(const std::any& value) { return std::any_cast<Result>(&value); }
 
   nlohmann::json data_to_json(const Job& job) const final { return data(job); }
-  std::any data_from_json(const nlohmann::json& object) const final {
-    return object.get<Data>();
-  }
+  std::any data_from_json(const nlohmann::json& object) const final { return object.get<Data>(); }
   nlohmann::json result_to_json(const std::any& value) const final {
     return value.has_value() ? nlohmann::json(*result(value)) : nlohmann::json();
   }

@@ -32,12 +32,11 @@ class Execution {
         listener_(listener),
         clock_(clock),
         estimates_(estimates_of(plan_, options.estimates, options.memory_bytes)),
-        scheduler_(scheduled(plan_, estimates_),
-                   {.total = options.total,
-                    .most_seconds = options.most_seconds,
-                    .retries = options.retries,
-                    .fail_fast = options.fail_fast,
-                    .all_at_once = runner.orders_jobs()}),
+        scheduler_(scheduled(plan_, estimates_), {.total = options.total,
+                                                  .most_seconds = options.most_seconds,
+                                                  .retries = options.retries,
+                                                  .fail_fast = options.fail_fast,
+                                                  .all_at_once = runner.orders_jobs()}),
         outcomes_(plan_.size()),
         begun_(plan_.size()) {}
 

@@ -26,7 +26,8 @@ using RunClock = std::function<double()>;
 /// Starts a clock that really runs.
 RunClock steady_clock();
 
-/// Returns what each job of a plan is expected to need on one thread; nothing for what does not run.
+/// Returns what each job of a plan is expected to need on one thread; nothing for what does not
+/// run.
 std::vector<Estimate> estimates_of(const std::vector<PlannedJob>& plan, const Estimates& learned,
                                    std::uint64_t memory_bytes);
 

@@ -14,8 +14,8 @@ namespace semigeo::jobs {
 /// A job that another process is to do.
 struct JobRequest {
   Job job;
-  int threads = 1;                        ///< Threads that the job may use at once.
-  std::uint64_t memory_bytes = 0;         ///< Memory of all jobs that run side by side; 0: not told.
+  int threads = 1;                 ///< Threads that the job may use at once.
+  std::uint64_t memory_bytes = 0;  ///< Memory of all jobs that run side by side; 0: not told.
   std::uint64_t address_space_bytes = 0;  ///< Address space of the process; 0: no limit.
   std::filesystem::path log;              ///< The file to which what the job prints is appended.
 };

@@ -67,8 +67,7 @@ std::string sentence_about(const Job& job, const std::string& cause, const fs::p
   const JobWords& words = job.kind->words();
   const std::string printed = last_lines(log);
   const std::string where =  // an empty log is not kept
-      printed.empty() ? "; "
-                      : "; it last said: " + printed + "; see " + log.string() + ", and ";
+      printed.empty() ? "; " : "; it last said: " + printed + "; see " + log.string() + ", and ";
   return subject_of(job).string() + ": its " + (words.stands_for_scan ? "" : words.kind + ' ') +
          "job " + cause + where + "run again" + words.kill_remedy;
 }

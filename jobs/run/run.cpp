@@ -119,8 +119,7 @@ class Run {
   void clean_up() {
     if (!lock_) return;
     std::set<fs::path> folders;
-    for (const PlannedJob& planned : result_.plan)
-      folders.insert(planned.job.output.parent_path());
+    for (const PlannedJob& planned : result_.plan) folders.insert(planned.job.output.parent_path());
     for (const fs::path& folder : folders) io::remove_stale_partials(folder);
     if (!waited_) return;
     remove_empty_logs(settings_.home / "logs");

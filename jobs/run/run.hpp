@@ -36,8 +36,8 @@ struct RunSettings {
   std::string program_version;  ///< For the journal.
   int threads = 0;              ///< For the journal; 0: one per core.
   bool verify = false;          ///< What is to be verified is not taken from the digest cache.
-  bool is_archive = true;  ///< The home has scans: what was learned of them is kept.
-  bool is_kept = true;     ///< Others know the home; if not, there is neither lock nor journal.
+  bool is_archive = true;       ///< The home has scans: what was learned of them is kept.
+  bool is_kept = true;  ///< Others know the home; if not, there is neither lock nor journal.
 };
 
 /// What a run asks whoever starts it.

@@ -9,8 +9,8 @@
 
 namespace semigeo::jobs {
 
-/// Writes one run into the journal of its archive. If the journal cannot be written, the run goes on
-/// without it.
+/// Writes one run into the journal of its archive. If the journal cannot be written, the run goes
+/// on without it.
 class RunJournal : public JobListener {
  public:
   /// Writes the beginning of the run, and fills in the host, the process and the threads of `run`.

@@ -8,10 +8,7 @@
 namespace semigeo::jobs {
 
 Scheduler::Scheduler(std::vector<ScheduledJob> jobs, const SchedulerOptions& options)
-    : jobs_(std::move(jobs)),
-      options_(options),
-      records_(jobs_.size()),
-      resources_(options.total) {
+    : jobs_(std::move(jobs)), options_(options), records_(jobs_.size()), resources_(options.total) {
   for (std::size_t job = 0; job < jobs_.size(); ++job) {
     if (jobs_[job].state == JobState::kFailed && options_.fail_fast) stopping_ = true;
     if (has_ended(jobs_[job].state)) continue;

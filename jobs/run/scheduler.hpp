@@ -11,11 +11,11 @@
 namespace semigeo::jobs {
 
 struct SchedulerOptions {
-  engine::Amount total;       ///< Cores and bytes of all jobs that run side by side.
-  double most_seconds = 0;    ///< Nothing starts that is not expected to end in time; 0: no limit.
-  int retries = 1;            ///< Further attempts at a job whose process was lost.
-  bool fail_fast = false;     ///< Nothing starts after the first failure.
-  bool all_at_once = false;   ///< Every job may start now: who runs them orders and admits them.
+  engine::Amount total;      ///< Cores and bytes of all jobs that run side by side.
+  double most_seconds = 0;   ///< Nothing starts that is not expected to end in time; 0: no limit.
+  int retries = 1;           ///< Further attempts at a job whose process was lost.
+  bool fail_fast = false;    ///< Nothing starts after the first failure.
+  bool all_at_once = false;  ///< Every job may start now: who runs them orders and admits them.
 };
 
 /// What the scheduler is told of a job.
@@ -67,7 +67,7 @@ class Scheduler {
 
  private:
   struct Record {
-    std::size_t waits_for = 0;            ///< Number of jobs before it that have not ended.
+    std::size_t waits_for = 0;  ///< Number of jobs before it that have not ended.
     std::vector<std::size_t> followers = {};
     std::optional<engine::Amount> share = {};  ///< What it has while it runs.
     int attempts = 0;

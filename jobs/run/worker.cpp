@@ -212,8 +212,8 @@ JobReply do_job(const JobRequest& request, JobLog& log, Reporter& reporter) {
     simulate_fault(request);
     engine::Workers workers(request.threads);
     const JobKind& kind = *request.job.kind;
-    reply.result = kind.result_to_json(
-        kind.run(request.job, {{workers, reporter, {}}, request.memory_bytes}));
+    reply.result =
+        kind.result_to_json(kind.run(request.job, {{workers, reporter, {}}, request.memory_bytes}));
     reply.kind = JobReply::Kind::kDone;
   } catch (const std::bad_alloc&) {
     limit_address_space(0);
@@ -227,7 +227,8 @@ JobReply do_job(const JobRequest& request, JobLog& log, Reporter& reporter) {
     limit_address_space(0);
     reply.error = subject_of(request.job).string() + ": " + e.what() +
                   "; run again, or give --memory-per-job more if its " +
-                  std::to_string(request.address_space_bytes >> 20) + " MiB of memory were too little";
+                  std::to_string(request.address_space_bytes >> 20) +
+                  " MiB of memory were too little";
   }
   log.end();
   limit_address_space(0);

@@ -27,11 +27,11 @@ struct SubmittedStage {
   int tasks = 0;
 };
 
-/// Runs jobs as array jobs of Slurm, one for each kind, several jobs in a task. All that the run and
-/// its tasks know of each other are files below ARCHIVE/slurm/<run>, which must be at the same place
-/// on all machines, as must be the scans and the program. That folder is removed if every job is
-/// done. A job is done if its output says so, whatever became of its task. `start` throws io::Error
-/// if sbatch fails, `wait` if squeue fails for minutes.
+/// Runs jobs as array jobs of Slurm, one for each kind, several jobs in a task. All that the run
+/// and its tasks know of each other are files below ARCHIVE/slurm/<run>, which must be at the same
+/// place on all machines, as must be the scans and the program. That folder is removed if every job
+/// is done. A job is done if its output says so, whatever became of its task. `start` throws
+/// io::Error if sbatch fails, `wait` if squeue fails for minutes.
 class SlurmRunner : public Runner {
  public:
   /// The plan must outlive the runner.

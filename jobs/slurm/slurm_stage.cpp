@@ -120,7 +120,8 @@ JobRequest request_of(const PlannedJob& planned, const StageInputs& inputs) {
           .log = log_path(inputs.folders.archive / "logs", planned.job)};
 }
 
-SlurmStage stage_of(const JobKind& kind, const std::vector<std::size_t>& jobs, const StageInputs& inputs) {
+SlurmStage stage_of(const JobKind& kind, const std::vector<std::size_t>& jobs,
+                    const StageInputs& inputs) {
   const std::string& name = kind.words().kind;
   const fs::path folder = inputs.folders.run / name;
   SlurmStage stage{.array = {.name = "semigeo-" + name,
@@ -161,15 +162,14 @@ SlurmStage stage_of(const JobKind& kind, const std::vector<std::size_t>& jobs, c
 
 std::vector<SlurmStage> stages_of(const std::vector<PlannedJob>& plan,
                                   const std::vector<std::size_t>& jobs,
-                                  const ExecutorOptions& options,
-                                  const SlurmOptions& slurm, const SlurmFolders& folders) {
-  const StageInputs inputs{
-      .plan = plan,
-      .options = options,
-      .slurm = slurm,
-      .folders = folders,
-      .estimates = estimates_of(plan, options.estimates, options.memory_bytes),
-      .threads = std::max(1, options.threads)};
+                                  const ExecutorOptions& options, const SlurmOptions& slurm,
+                                  const SlurmFolders& folders) {
+  const StageInputs inputs{.plan = plan,
+                           .options = options,
+                           .slurm = slurm,
+                           .folders = folders,
+                           .estimates = estimates_of(plan, options.estimates, options.memory_bytes),
+                           .threads = std::max(1, options.threads)};
   // Plans are made in the order of kinds: those of the jobs before a job come first.
   std::vector<const JobKind*> kinds;
   for (const std::size_t job : jobs)

@@ -38,7 +38,7 @@ struct SlurmFolders {
 /// io::Error if a file cannot be written.
 std::vector<SlurmStage> stages_of(const std::vector<PlannedJob>& plan,
                                   const std::vector<std::size_t>& jobs,
-                                  const ExecutorOptions& options,
-                                  const SlurmOptions& slurm, const SlurmFolders& folders);
+                                  const ExecutorOptions& options, const SlurmOptions& slurm,
+                                  const SlurmFolders& folders);
 
 }  // namespace semigeo::jobs

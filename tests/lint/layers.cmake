@@ -1,54 +1,106 @@
-# The one rule between the folders, over the includes of every source: who may see whom.
+# Who may include whom: the order of the layers and of the folders in them, over the includes of
+# every source. It says what a folder may include when one breaks the order.
 #   cmake -DROOT=<repository> -P layers.cmake
 cmake_minimum_required(VERSION 3.25)
 
-set(engine_may "engine")
-set(kernels_may "kernels")
-set(io_may "io;kernels")
-set(jobs_may "jobs;engine;io;kernels")
+# Folders, each with the folders that it may include besides itself. Those of other layers are
+# named by their layer.
+set(rules
+  "engine:"
+
+  "kernels/surface:"
+  "kernels/repair: kernels/surface"
+  "kernels/patch: kernels/surface"
+  "kernels/evolution: kernels/surface kernels/patch"
+  "kernels/features: kernels/surface kernels/patch"
+  "kernels/recognition: kernels/surface kernels/features"
+  "kernels/recognition/thesis: kernels/surface kernels/features kernels/recognition"
+
+  "io/files:"
+  "io/scans: kernels io/files"
+  "io/hdf5: io/files"
+  "io/dataset: kernels io/files io/hdf5"
+  "io/library: kernels io/files io/hdf5"
+
+  "jobs/archive: engine kernels io"
+  "jobs/stages: engine kernels io"
+  "jobs/plan: engine kernels io jobs/archive"
+  "jobs/run: engine kernels io jobs/archive jobs/plan"
+  "jobs/slurm: engine kernels io jobs/archive jobs/plan jobs/run"
+  "jobs/kinds: engine kernels io jobs/archive jobs/plan jobs/stages"
+  "jobs/cli: engine kernels io jobs/archive jobs/plan jobs/run jobs/slurm jobs/kinds jobs/stages")
+
+# Single headers that a layer may include besides.
+# Who owns a file descriptor is decided once, for engine, io and jobs.
+set(exceptions "io:engine/descriptor.hpp")
+
+# Libraries, each with the one folder or layer that may include its headers.
+set(libraries "tbb/:engine" "nanoflann:kernels" "hdf5.h:io/hdf5" "zlib.h:io" "libdeflate.h:io"
+  "xxhash.h:io" "CLI/:jobs/cli")
+# Tests and benchmarks only: they make meshes that are none of ours.
+list(APPEND libraries "OpenMesh/:none")
 
 set(violations 0)
-foreach(layer engine kernels io jobs)
-  file(GLOB_RECURSE sources "${ROOT}/${layer}/*.hpp" "${ROOT}/${layer}/*.cpp")
-  if(NOT sources)
-    message(FATAL_ERROR "no sources in ${ROOT}/${layer}")
+function(complain text)
+  message("${text}")
+  math(EXPR violations "${violations} + 1")
+  set(violations "${violations}" PARENT_SCOPE)
+endfunction()
+
+set(folders "")
+foreach(rule ${rules})
+  string(REGEX MATCH "^([^:]+):(.*)$" matched "${rule}")
+  set(folder "${CMAKE_MATCH_1}")
+  string(STRIP "${CMAKE_MATCH_2}" may)
+  string(REPLACE " " ";" may_${folder} "${may}")
+  list(APPEND folders "${folder}")
+endforeach()
+
+file(GLOB_RECURSE sources RELATIVE "${ROOT}" "${ROOT}/engine/*.?pp" "${ROOT}/kernels/*.?pp"
+  "${ROOT}/io/*.?pp" "${ROOT}/jobs/*.?pp")
+if(NOT sources)
+  message(FATAL_ERROR "no sources in ${ROOT}")
+endif()
+
+foreach(source ${sources})
+  cmake_path(GET source PARENT_PATH folder)
+  string(REGEX MATCH "^[^/]*" own "${folder}")
+  if(NOT folder IN_LIST folders)
+    complain("${source}: ${folder} has no place in the order of folders: give it one in layers.cmake")
+    continue()
   endif()
-  foreach(source ${sources})
-    file(RELATIVE_PATH shown "${ROOT}" "${source}")
-    file(STRINGS "${source}" includes REGEX "^ *# *include")
-    foreach(line ${includes})
-      if(line MATCHES "\"([a-z]+)/")
-        set(included "${CMAKE_MATCH_1}")
-        # Who owns a file descriptor is decided once: io may use this header of engine and no other.
-        if(layer STREQUAL "io" AND line MATCHES "\"engine/descriptor.hpp\"")
-          continue()
+  file(STRINGS "${ROOT}/${source}" includes REGEX "^ *# *include")
+  foreach(line ${includes})
+    if(line MATCHES "\"([^\"]+)\"")
+      set(header "${CMAKE_MATCH_1}")
+      cmake_path(GET header PARENT_PATH other)
+      string(REGEX MATCH "^[^/]*" layer "${other}")
+      if(other STREQUAL "")
+        complain("${source}: ${line}: write includes from the root of the repository")
+      elseif(NOT other STREQUAL folder AND NOT other IN_LIST may_${folder}
+             AND NOT layer IN_LIST may_${folder} AND NOT "${own}:${header}" IN_LIST exceptions)
+        if("${may_${folder}}" STREQUAL "")
+          complain("${source}: ${line}: ${folder} may include nothing but itself")
+        else()
+          string(REPLACE ";" ", " shown "${may_${folder}}")
+          complain("${source}: ${line}: ${folder} may include ${shown} and itself only")
         endif()
-        if(NOT included IN_LIST ${layer}_may)
-          message("${shown}: ${line}: ${layer} may include ${${layer}_may} only")
-          math(EXPR violations "${violations} + 1")
-        endif()
-      elseif(line MATCHES "\"[^/]*\"")
-        message("${shown}: ${line}: write includes from the root of the repository")
-        math(EXPR violations "${violations} + 1")
       endif()
-      # Libraries: each belongs to one layer.
-      foreach(rule "tbb/:engine" "OpenMesh/:tests" "nanoflann:kernels" "hdf5.h:io" "zlib.h:io"
-                   "libdeflate.h:io" "xxhash.h:io" "CLI/:jobs")
-        string(REPLACE ":" ";" rule "${rule}")
-        list(GET rule 0 library)
-        list(GET rule 1 owner)
-        if(line MATCHES "<.*${library}" AND NOT owner STREQUAL layer)
-          message("${shown}: ${line}: ${library} belongs to ${owner}")
-          math(EXPR violations "${violations} + 1")
+    elseif(line MATCHES "<([^>]+)>")
+      set(header "${CMAKE_MATCH_1}")
+      foreach(rule ${libraries})
+        string(REGEX MATCH "^(.*):([^:]+)$" matched "${rule}")
+        if(header MATCHES "^${CMAKE_MATCH_1}")
+          string(REGEX MATCH "^(.*):([^:]+)$" matched "${rule}")
+          set(owner "${CMAKE_MATCH_2}")
+          if(NOT "${folder}/" MATCHES "^${owner}/")
+            complain("${source}: ${line}: only ${owner} may include this library")
+          endif()
         endif()
       endforeach()
-      if(line MATCHES "<hdf5.h>" AND NOT shown MATCHES "^io/hdf5/hdf5")
-        message("${shown}: ${line}: only io/hdf5/hdf5* may include HDF5")
-        math(EXPR violations "${violations} + 1")
-      endif()
-    endforeach()
+    endif()
   endforeach()
 endforeach()
 if(violations GREATER 0)
-  message(FATAL_ERROR "${violations} includes break the layering (see README.md of each folder)")
+  message(FATAL_ERROR "${violations} includes break the order of folders (docs/decisions/01-layers.md)")
 endif()

@@ -32,7 +32,8 @@ class FakeRunner : public jobs::Runner {
   }
 
   jobs::RunnerEvent wait() override {
-    if (events.empty()) return jobs::JobLost{.number = 0, .wanted = true, .cause = {}, .error = {}, .seconds = 0};
+    if (events.empty())
+      return jobs::JobLost{.number = 0, .wanted = true, .cause = {}, .error = {}, .seconds = 0};
     jobs::RunnerEvent event = std::move(events.front());
     events.pop_front();
     if (on_wait) on_wait();
