@@ -71,7 +71,8 @@ int recognise(RecogniseOptions& options) {
       {.home = folder,
        .plan =
            [&](DigestCache&) {
-             return plan_recognition(scenes, library, options.search, folder, options.execution.limits.threads);
+             return plan_recognition(scenes, library, options.search, folder,
+                                     options.execution.limits.threads);
            },
        .prepare = [&](const std::vector<PlannedJob>& plan) { record_scenes(folder, plan); },
        .is_archive = false,

@@ -41,15 +41,14 @@ class ChosenRunner {
     executor_.logs = home / "logs";
   }
 
-  ExecutionOptions execution() {
+  ExecutionSettings execution() {
     executor_.estimates = Estimates::read(home_);
-    return execution_options(executor_);
+    return execution_settings(executor_);
   }
 
   Runner& runner(const std::vector<PlannedJob>& plan) {
     if (options_.executor == ExecutorKind::kSlurm) {
-      slurm_ =
-          std::make_unique<SlurmRunner>(plan, home_, executor_, options_.slurm);
+      slurm_ = std::make_unique<SlurmRunner>(plan, home_, executor_, options_.slurm);
       return *slurm_;
     }
     prepare_folders(plan, executor_);
@@ -70,7 +69,8 @@ class ChosenRunner {
   std::unique_ptr<SlurmRunner> slurm_;
 };
 
-int print_results(const ExecutionOptions& options, const PlanSource& source, const RunResult& result) {
+int print_results(const ExecutionOptions& options, const PlanSource& source,
+                  const RunResult& result) {
   if (source.print) {
     source.print(result);
   } else if (options.json) {
@@ -88,7 +88,7 @@ int run(const ExecutionOptions& options, const PlanSource& source) {
       .plan = source.plan,
       .prepare = source.prepare,
       .runner = [&](const std::vector<PlannedJob>& plan) -> Runner& { return chosen.runner(plan); },
-      .options = [&] { return chosen.execution(); },
+      .settings = [&] { return chosen.execution(); },
       .warn = [](const std::string& what) { std::fprintf(stderr, "semigeo: %s\n", what.c_str()); }};
   if (options.explain && !options.json)
     hooks.planned = [](const std::vector<PlannedJob>& plan) {

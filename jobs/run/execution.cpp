@@ -24,18 +24,18 @@ std::vector<ScheduledJob> scheduled(const std::vector<PlannedJob>& plan,
 
 class Execution {
  public:
-  Execution(std::vector<PlannedJob> plan, Runner& runner, const ExecutionOptions& options,
+  Execution(std::vector<PlannedJob> plan, Runner& runner, const ExecutionSettings& settings,
             Progress& progress, JobListener* listener, const RunClock& clock)
       : plan_(std::move(plan)),
         runner_(runner),
         progress_(progress),
         listener_(listener),
         clock_(clock),
-        estimates_(estimates_of(plan_, options.estimates, options.memory_bytes)),
-        scheduler_(scheduled(plan_, estimates_), {.total = options.total,
-                                                  .most_seconds = options.most_seconds,
-                                                  .retries = options.retries,
-                                                  .fail_fast = options.fail_fast,
+        estimates_(estimates_of(plan_, settings.estimates, settings.memory_bytes)),
+        scheduler_(scheduled(plan_, estimates_), {.total = settings.total,
+                                                  .most_seconds = settings.most_seconds,
+                                                  .retries = settings.retries,
+                                                  .fail_fast = settings.fail_fast,
                                                   .all_at_once = runner.orders_jobs()}),
         outcomes_(plan_.size()),
         begun_(plan_.size()) {}
@@ -202,9 +202,9 @@ std::vector<Estimate> estimates_of(const std::vector<PlannedJob>& plan, const Es
 }
 
 std::vector<JobOutcome> execute(std::vector<PlannedJob> plan, Runner& runner,
-                                const ExecutionOptions& options, Progress& progress,
+                                const ExecutionSettings& settings, Progress& progress,
                                 JobListener* listener, const RunClock& clock) {
-  return Execution(std::move(plan), runner, options, progress, listener, clock).run();
+  return Execution(std::move(plan), runner, settings, progress, listener, clock).run();
 }
 
 }  // namespace semigeo::jobs

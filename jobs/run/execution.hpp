@@ -12,7 +12,7 @@
 namespace semigeo::jobs {
 
 /// What holds for all jobs of an execution, wherever they run.
-struct ExecutionOptions {
+struct ExecutionSettings {
   engine::Amount total = {};       ///< Cores and bytes of all jobs that run side by side.
   std::uint64_t memory_bytes = 0;  ///< The bytes that the user has given; 0: not told.
   double most_seconds = 0;         ///< Nothing starts that would not end in time; 0: no limit.
@@ -38,7 +38,7 @@ std::vector<Estimate> estimates_of(const std::vector<PlannedJob>& plan, const Es
 /// running jobs end and starts no more; the second ends them. outcomes[i] belongs to plan[i].
 /// Throws what the runner throws.
 std::vector<JobOutcome> execute(std::vector<PlannedJob> plan, Runner& runner,
-                                const ExecutionOptions& options, Progress& progress,
+                                const ExecutionSettings& settings, Progress& progress,
                                 JobListener* listener = nullptr,
                                 const RunClock& clock = steady_clock());
 

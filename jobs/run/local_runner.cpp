@@ -195,7 +195,7 @@ void LocalRunner::cancel_running() {
   for (const auto& [child, running] : running_) children_.kill(child);
 }
 
-ExecutionOptions execution_options(const ExecutorOptions& options) {
+ExecutionSettings execution_settings(const ExecutorOptions& options) {
   engine::Amount total = engine::usable_resources();
   if (options.threads > 0) total.cores = options.threads;
   if (options.memory_bytes > 0) total.bytes = options.memory_bytes;
@@ -226,7 +226,7 @@ std::vector<JobOutcome> run_jobs(const std::vector<PlannedJob>& plan,
                                  JobListener* listener) {
   prepare_folders(plan, options);
   LocalRunner runner(options);
-  auto outcomes = execute(plan, runner, execution_options(options), progress, listener);
+  auto outcomes = execute(plan, runner, execution_settings(options), progress, listener);
   if (options.worker_log.empty()) remove_empty_logs(options.logs);
   return outcomes;
 }

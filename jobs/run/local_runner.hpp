@@ -68,7 +68,7 @@ class LocalRunner : public Runner {
 
 /// Returns the options of an execution on this machine: its cores and its free memory, where the
 /// user has not given others.
-ExecutionOptions execution_options(const ExecutorOptions& options);
+ExecutionSettings execution_settings(const ExecutorOptions& options);
 
 /// Makes the folders of logs and outputs, and removes from them what killed writers have left.
 /// Throws io::Error if a folder cannot be made.

@@ -96,7 +96,7 @@ class Run {
     }
     Progress progress(jobs_to_run(), static_cast<std::uintmax_t>(bytes_to_read(result_.plan)));
     Runner& runner = hooks_.runner(result_.plan);
-    outcomes = execute(result_.plan, runner, hooks_.options(), progress,
+    outcomes = execute(result_.plan, runner, hooks_.settings(), progress,
                        journal_ ? &*journal_ : nullptr, clock_);
     waited_ = runner.waits();
     summary.vertex_levels = progress.vertex_levels();

@@ -50,9 +50,9 @@ struct RunHooks {
   std::function<void(const std::vector<PlannedJob>&)> planned = {};
   /// Returns the runner of the jobs, which must live as long as the run.
   std::function<Runner&(const std::vector<PlannedJob>&)> runner;
-  /// Returns the options of the execution; called after the lock is taken, as the home may have
+  /// Returns the settings of the execution; called after the lock is taken, as the home may have
   /// learned meanwhile.
-  std::function<ExecutionOptions()> options;
+  std::function<ExecutionSettings()> settings;
   /// Is told, in one sentence each, what went wrong without being a failure of the run.
   std::function<void(const std::string&)> warn;
 };

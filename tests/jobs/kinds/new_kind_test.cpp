@@ -46,7 +46,7 @@ class NewKindTest : public testing::Test {
                        prepare_folders(planned, options_);
                        return runner;
                      },
-                     .options = [this] { return execution_options(options_); },
+                     .settings = [this] { return execution_settings(options_); },
                      .warn = [](const std::string& what) { ADD_FAILURE() << what; }});
     said_ = testing::internal::GetCapturedStderr();
     return result;

@@ -48,7 +48,7 @@ class ExecutionTest : public testing::Test {
   tests::TemporaryFolder folder_;
   std::vector<PlannedJob> plan_;
   tests::FakeRunner runner_;
-  ExecutionOptions options_;
+  ExecutionSettings options_;
   Notes notes_;
   double now_ = 0;
   std::vector<JobOutcome> outcomes_;

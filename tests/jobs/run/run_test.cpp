@@ -35,7 +35,7 @@ class RunTest : public testing::Test {
       order_.push_back("runner");
       return runner_;
     };
-    hooks_.options = [] { return ExecutionOptions{.total = {.cores = 1, .bytes = 1000}}; };
+    hooks_.settings = [] { return ExecutionSettings{.total = {.cores = 1, .bytes = 1000}}; };
     hooks_.warn = [this](const std::string& what) { warnings_.push_back(what); };
   }
   RunResult run() {
