@@ -22,13 +22,3 @@ function(semigeo_layer name)
   # Not for tests, which mix literals freely.
   target_compile_options(semigeo_${name} PRIVATE -Wconversion -Wno-sign-conversion)
 endfunction()
-
-# `tidy`: clang-tidy over every source, with the rules of .clang-tidy; needs Debian's clang-tidy.
-find_program(SEMIGEO_RUN_CLANG_TIDY NAMES run-clang-tidy run-clang-tidy-14)
-if(SEMIGEO_RUN_CLANG_TIDY)
-  add_custom_target(tidy
-    COMMAND ${SEMIGEO_RUN_CLANG_TIDY} -quiet -p ${PROJECT_BINARY_DIR}
-            -extra-arg=-Wno-unknown-warning-option
-            "${PROJECT_SOURCE_DIR}/(engine|kernels|io|jobs)/.*[.]cpp"
-    VERBATIM)
-endif()
