@@ -31,7 +31,7 @@ std::vector<fs::path> scan_files(const std::vector<fs::path>& places) {
     }
     std::vector<fs::path> found;
     for (const auto& entry : fs::recursive_directory_iterator(place))
-      if (entry.is_regular_file() && io::scan_format(entry.path())) found.push_back(entry.path());
+      if (entry.is_regular_file() && io::is_scan_name(entry.path())) found.push_back(entry.path());
     std::ranges::sort(found);
     files.insert(files.end(), found.begin(), found.end());
   }

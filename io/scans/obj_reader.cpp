@@ -81,13 +81,19 @@ class ObjBody {
   std::vector<std::int64_t> corners_;
 };
 
-}  // namespace
-
 Scan read_obj(ByteSource& source, const ScanLimits& limits) {
   ScanBuilder builder(source, limits);
   builder.set_index_base(1);
   ObjBody(source, builder).read();
   return builder.finish("OBJ");
 }
+
+std::string variant_of(std::string_view) {
+  return "OBJ";
+}
+
+}  // namespace
+
+const ScanFormat kObjFormat = {.extension = ".obj", .read = read_obj, .variant = variant_of};
 
 }  // namespace semigeo::io

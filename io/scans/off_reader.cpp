@@ -203,8 +203,6 @@ class OffBinary {
   std::vector<std::int64_t> corners_;
 };
 
-}  // namespace
-
 Scan read_off(ByteSource& source, const ScanLimits& limits) {
   TextScanner scanner(source, {.hash_comments = true});
   ScanBuilder builder(source, limits);
@@ -217,5 +215,14 @@ Scan read_off(ByteSource& source, const ScanLimits& limits) {
   OffText(scanner, builder).read();
   return builder.finish(header.keyword);
 }
+
+std::string variant_of(std::string_view begin) {
+  const std::string_view keyword = begin.substr(0, begin.find('\n'));
+  return keyword.find("BINARY") != std::string_view::npos ? "OFF binary" : "OFF";
+}
+
+}  // namespace
+
+const ScanFormat kOffFormat = {.extension = ".off", .read = read_off, .variant = variant_of};
 
 }  // namespace semigeo::io

@@ -180,8 +180,6 @@ void announce(const PlyHeader& header, ScanBuilder& builder) {
                  kBadHeader);
 }
 
-}  // namespace
-
 Scan read_ply(ByteSource& source, const ScanLimits& limits) {
   const PlyHeader header = read_ply_header(source);
   ScanBuilder builder(source, limits);
@@ -195,5 +193,13 @@ Scan read_ply(ByteSource& source, const ScanLimits& limits) {
                             ? "PLY binary big endian"
                             : "PLY binary little endian");
 }
+
+std::string variant_of(std::string_view begin) {
+  return begin.find("format ascii") != std::string_view::npos ? "PLY ascii" : "PLY binary";
+}
+
+}  // namespace
+
+const ScanFormat kPlyFormat = {.extension = ".ply", .read = read_ply, .variant = variant_of};
 
 }  // namespace semigeo::io

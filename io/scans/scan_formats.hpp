@@ -1,15 +1,32 @@
 #pragma once
 
+#include <array>
+#include <string>
+#include <string_view>
+
 #include "io/files/byte_source.hpp"
 #include "io/scans/scan_reader.hpp"
 
 namespace semigeo::io {
 
-// One reader per format, for read_scan. Each takes a source at its start that holds at least one
-// byte, and leaves it anywhere.
-Scan read_ply(ByteSource& source, const ScanLimits& limits);
-Scan read_obj(ByteSource& source, const ScanLimits& limits);
-Scan read_off(ByteSource& source, const ScanLimits& limits);
-Scan read_stl(ByteSource& source, const ScanLimits& limits);
+/// Everything that the program knows about one format of scans.
+struct ScanFormat {
+  std::string_view extension;  ///< ".ply": the end of its files' names, in lower case.
+  /// Reads a source at its start that holds at least one byte, and leaves it anywhere. Throws what
+  /// read_scan throws.
+  Scan (*read)(ByteSource& source, const ScanLimits& limits);
+  /// Returns the variant of the format that the first bytes of a file show: "PLY ascii". Files of
+  /// one variant need about the same time and memory for each byte.
+  std::string (*variant)(std::string_view begin);
+};
+
+// Each is defined by its reader.
+extern const ScanFormat kPlyFormat;
+extern const ScanFormat kObjFormat;
+extern const ScanFormat kOffFormat;
+extern const ScanFormat kStlFormat;
+
+/// The formats that the program reads, in the order in which messages name them.
+inline constexpr std::array kScanFormats = {&kPlyFormat, &kObjFormat, &kOffFormat, &kStlFormat};
 
 }  // namespace semigeo::io

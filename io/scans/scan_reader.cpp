@@ -1,9 +1,7 @@
 #include "io/scans/scan_reader.hpp"
 
-#include <algorithm>
-#include <array>
+#include <cstddef>
 #include <string_view>
-#include <utility>
 
 #include "io/files/byte_source.hpp"
 #include "io/files/error.hpp"
@@ -12,16 +10,7 @@
 namespace semigeo::io {
 namespace {
 
-struct FormatEntry {
-  std::string_view extension;
-  ScanFormat format;
-  Scan (*read)(ByteSource&, const ScanLimits&);
-};
-
-constexpr std::array<FormatEntry, 4> kFormats = {{{".ply", ScanFormat::kPly, read_ply},
-                                                  {".obj", ScanFormat::kObj, read_obj},
-                                                  {".off", ScanFormat::kOff, read_off},
-                                                  {".stl", ScanFormat::kStl, read_stl}}};
+constexpr std::size_t kVariantBytes = 1024;  // that tell the variant of a format
 
 std::string lower_case_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -30,31 +19,48 @@ std::string lower_case_extension(const std::filesystem::path& path) {
   return extension;
 }
 
-const FormatEntry* find_format(const std::filesystem::path& path) {
+const ScanFormat* find_format(const std::filesystem::path& path) {
   std::string extension = lower_case_extension(path);
   if (extension == ".gz") extension = lower_case_extension(path.stem());
-  const auto* const entry =
-      std::find_if(kFormats.begin(), kFormats.end(),
-                   [&](const FormatEntry& candidate) { return candidate.extension == extension; });
-  return entry == kFormats.end() ? nullptr : entry;
+  for (const ScanFormat* format : kScanFormats)
+    if (format->extension == extension) return format;
+  return nullptr;
 }
 
 }  // namespace
 
-std::optional<ScanFormat> scan_format(const std::filesystem::path& path) {
-  const FormatEntry* entry = find_format(path);
-  return entry ? std::optional(entry->format) : std::nullopt;
+bool is_scan_name(const std::filesystem::path& path) {
+  return find_format(path) != nullptr;
+}
+
+std::string scan_variant(const std::filesystem::path& path) {
+  const ScanFormat* format = find_format(path);
+  if (format == nullptr) return "";
+  ByteSource source(path);
+  source.fill(kVariantBytes);
+  const std::string variant = format->variant(source.ahead().substr(0, kVariantBytes));
+  return source.compressed() ? variant + ", gzip" : variant;
+}
+
+std::string scan_extensions(std::string_view separator, std::string_view last_separator) {
+  std::string text;
+  for (const ScanFormat* format : kScanFormats) {
+    if (format != kScanFormats.front())
+      text += format == kScanFormats.back() ? last_separator : separator;
+    text += format->extension;
+  }
+  return text;
 }
 
 Scan read_scan(const std::filesystem::path& path, const ScanLimits& limits) {
   ByteSource source(path);
-  const FormatEntry* entry = find_format(path);
-  if (!entry)
+  const ScanFormat* format = find_format(path);
+  if (format == nullptr)
     throw Error(path, "", "its name is not that of a scan",
-                "scans are .ply, .obj, .off and .stl, and the same with .gz");
+                "scans are " + scan_extensions(", ", " and ") + ", and the same with .gz");
   if (!source.fill(1)) throw Error(path, "", "the file is empty", "copy it again from its source");
   try {
-    Scan scan = entry->read(source, limits);
+    Scan scan = format->read(source, limits);
     scan.bytes_after_end = source.drain();
     if (source.compressed()) scan.format += ", gzip";
     return scan;

@@ -2,19 +2,25 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
+#include <string_view>
 
 #include "kernels/surface/triangle_mesh.hpp"
 
 namespace semigeo::io {
 
-/// The formats of scans.
-enum class ScanFormat { kPly, kObj, kOff, kStl };
+/// Returns whether a file's name is that of a scan: it has the extension of a format in any case,
+/// before a last ".gz" if there is one. The file is not looked at.
+bool is_scan_name(const std::filesystem::path& path);
 
-/// Returns the format that a file's name promises: its extension in any case, before a last ".gz"
-/// if there is one. Returns nothing for other names. The file is not looked at.
-std::optional<ScanFormat> scan_format(const std::filesystem::path& path);
+/// Returns the variant of the format that the first bytes of a file show: "PLY ascii", "STL binary,
+/// gzip". Returns an empty text if the name is not that of a scan. Throws `Error` if the file
+/// cannot be read.
+std::string scan_variant(const std::filesystem::path& path);
+
+/// Returns the extensions of all formats in words: ".ply, .obj, .off and .stl" for ", " and " and
+/// ".
+std::string scan_extensions(std::string_view separator, std::string_view last_separator);
 
 /// Limits what a scan may hold before it is refused.
 struct ScanLimits {

@@ -159,8 +159,6 @@ void read_binary(ByteSource& source, ScanBuilder& builder) {
   }
 }
 
-}  // namespace
-
 Scan read_stl(ByteSource& source, const ScanLimits& limits) {
   ScanBuilder builder(source, limits);
   if (!has_binary_size(source) && is_text(source)) {
@@ -170,5 +168,15 @@ Scan read_stl(ByteSource& source, const ScanLimits& limits) {
   read_binary(source, builder);
   return builder.finish("STL binary");
 }
+
+std::string variant_of(std::string_view begin) {
+  // The header of a binary file may begin with the same word, but its numbers hold zeros.
+  return begin.starts_with("solid") && begin.find('\0') == std::string_view::npos ? "STL ascii"
+                                                                                  : "STL binary";
+}
+
+}  // namespace
+
+const ScanFormat kStlFormat = {.extension = ".stl", .read = read_stl, .variant = variant_of};
 
 }  // namespace semigeo::io

@@ -86,7 +86,7 @@ struct Search {
   std::vector<fs::path> passed_over;
 
   bool wants(const fs::path& file) const {
-    return io::scan_format(file).has_value() || (datasets && is_dataset(file));
+    return io::is_scan_name(file) || (datasets && is_dataset(file));
   }
   bool enters(const fs::path& folder) const {
     std::error_code ignored;
@@ -136,7 +136,7 @@ void search_folder(const fs::path& top, const Search& search, std::vector<FoundS
 void add_file(const fs::path& file, const Search& search, std::vector<FoundScan>& found) {
   if (!search.wants(file))
     throw io::Error(file, "", "is not a scan that semigeo reads",
-                    std::string("give .ply, .obj, .off or .stl files, also as .gz, ") +
+                    "give " + io::scan_extensions(", ", " or ") + " files, also as .gz, " +
                         (search.datasets ? "datasets (.vtkhdf), " : "") + "or folders of them");
   found.push_back(found_scan(file, file.filename()));
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/files/error.hpp"
+#include "io/scans/scan_reader.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/recognise_report.hpp"
 #include "jobs/cli/run_plan.hpp"
@@ -58,8 +59,8 @@ int recognise(RecogniseOptions& options) {
   }
   if (scenes.empty()) {
     std::fprintf(stderr,
-                 "semigeo: no scan (.ply, .obj, .off or .stl, or .gz of one) and no dataset "
-                 "(.vtkhdf) was found\n");
+                 "semigeo: no scan (%s, or .gz of one) and no dataset (.vtkhdf) was found\n",
+                 io::scan_extensions(", ", " or ").c_str());
     return kUsage;
   }
   std::optional<TemporaryFolder> temporary;
@@ -87,7 +88,8 @@ int recognise(RecogniseOptions& options) {
 void add_options(CLI::App* command, RecogniseOptions& options) {
   command
       ->add_option("scenes", options.inputs,
-                   "Scans (.ply .obj .off .stl, each also .gz), datasets (.vtkhdf), folders")
+                   "Scans (" + io::scan_extensions(" ", " ") +
+                       ", each also .gz), datasets (.vtkhdf), folders")
       ->default_str("")
       ->required()
       ->configurable(false);

@@ -4,6 +4,7 @@
 
 #include "io/files/atomic_file.hpp"
 #include "io/files/error.hpp"
+#include "io/scans/scan_reader.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/run_plan.hpp"
 #include "jobs/cli/surface_options.hpp"
@@ -57,7 +58,8 @@ int find_and_run(const RunOptions& options, const std::string& effective_config)
     return kUsage;
   }
   if (scans.empty()) {
-    std::fprintf(stderr, "semigeo: no .ply, .obj, .off or .stl file (or .gz of one) was found\n");
+    std::fprintf(stderr, "semigeo: no %s file (or .gz of one) was found\n",
+                 io::scan_extensions(", ", " or ").c_str());
     return kUsage;
   }
   return run_plan(options.execution,
@@ -71,8 +73,9 @@ int find_and_run(const RunOptions& options, const std::string& effective_config)
 
 void add_options(CLI::App* command, RunOptions& options) {
   command
-      ->add_option("scans", options.inputs,
-                   "Scans (.ply .obj .off .stl, each also .gz) and folders of them")
+      ->add_option(
+          "scans", options.inputs,
+          "Scans (" + io::scan_extensions(" ", " ") + ", each also .gz) and folders of them")
       ->default_str("")
       ->required()
       ->configurable(false);

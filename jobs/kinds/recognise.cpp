@@ -69,8 +69,8 @@ class RecogniseKind final : public TypedJobKind<RecogniseJobData, RecogniseJobRe
     std::error_code error;
     Estimate estimate;
     if (fs::exists(scene, error))
-      estimate = io::scan_format(scene) ? context.learned.of(scan_size(scene), levels, 1)
-                                        : estimate_of_dataset(scene, levels, context.learned);
+      estimate = io::is_scan_name(scene) ? context.learned.of(scan_size(scene), levels, 1)
+                                         : estimate_of_dataset(scene, levels, context.learned);
     const auto library = static_cast<double>(fs::file_size(recognise.library, error));
     if (error) return estimate;
     const bool thesis = recognise.search.method == RecognitionMethod::kThesis;

@@ -21,7 +21,7 @@ constexpr int kMostLevels = 16;
 kernels::RecognitionModel read_scene(const RecogniseJob& job,
                                      const RecognitionParameters& parameters,
                                      const engine::RunContext& context, RecognisedScene& scene) {
-  if (io::scan_format(job.scene)) {
+  if (io::is_scan_name(job.scene)) {
     const ScanSurface scan = read_surface(job.scene, job.input_xxh3);
     scene.format = scan.format;
     scene.repairs = scan.repairs;

@@ -12,13 +12,16 @@ using ScanReader = ScanFileTest;
 const std::string kObj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf 1 2 3\n";
 
 TEST(ScanFormatTest, IsDecidedByTheName) {
-  EXPECT_EQ(scan_format("a.ply"), ScanFormat::kPly);
-  EXPECT_EQ(scan_format("x/y.b/a b.OBJ"), ScanFormat::kObj);
-  EXPECT_EQ(scan_format("a.Off.gz"), ScanFormat::kOff);
-  EXPECT_EQ(scan_format("a.ply.stl.GZ"), ScanFormat::kStl);
+  for (const char* name : {"a.ply", "x/y.b/a b.OBJ", "a.Off.gz", "a.ply.stl.GZ"})
+    EXPECT_TRUE(is_scan_name(name)) << name;
   for (const char* name :
        {"a", "a.gz", "ply", ".ply", "a.plyx", "a.ply.zip", "a.ply.gz.gz", "", "a.ply/b"})
-    EXPECT_EQ(scan_format(name), std::nullopt) << name;
+    EXPECT_FALSE(is_scan_name(name)) << name;
+}
+
+TEST(ScanFormatTest, ExtensionsAreListedInWords) {
+  EXPECT_EQ(scan_extensions(", ", " and "), ".ply, .obj, .off and .stl");
+  EXPECT_EQ(scan_extensions(" ", " "), ".ply .obj .off .stl");
 }
 
 TEST_F(ScanReader, ReadsCompressedFiles) {
