@@ -1,6 +1,7 @@
 #include "jobs/kinds/triplets.hpp"
 
 #include "io/dataset/dataset.hpp"
+#include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
 #include "io/library/triplet_run.hpp"
 #include "jobs/archive/scan_size.hpp"
@@ -14,7 +15,7 @@ namespace semigeo::jobs {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Raised whenever the same dataset and parameters give other bytes.
+/// It is raised whenever the same dataset and parameters give other bytes.
 static constexpr const char* kVersion = "triplets 1";
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TripletsJobResult, features, samples, triplets)
@@ -38,14 +39,18 @@ class TripletsKind final : public TypedJobKind<TripletsJobData, TripletsJobResul
                                      : io::TripletRun(output).job_key();
   }
 
-  /// The run is made of the dataset that is there.
+  /// Takes the key of the dataset that is there now. Throws io::Error if there is none.
   bool resolve_inputs(Job& job, OutputKeys&) const override {
     job.key.clear();
+    std::error_code ignored;
+    if (!fs::exists(job.input, ignored))
+      throw io::Error(job.output, "", "there is no dataset to make it of",
+                      "see why the jobs before it failed, and run again");
     job.key = triplets_key(job.name, io::read_origin(job.input).job_key, data(job).parameters);
     return is_complete(job);
   }
 
-  /// A run of another dataset must not get into a library.
+  /// Removes the run of another dataset, which must not get into a library.
   void remove_stale_output(const Job& job) const override {
     std::error_code ignored;
     if (!is_complete(job)) fs::remove(job.output, ignored);
@@ -56,7 +61,7 @@ class TripletsKind final : public TypedJobKind<TripletsJobData, TripletsJobResul
     return {{.kind = "dataset", .path = planned.job.input, .is_readable = is_readable(planned)}};
   }
 
-  /// Level 0 is smoothed as surface jobs do it, to some levels only.
+  /// Estimates a surface job with fewer levels, because level 0 is smoothed again.
   Estimate estimate(const PlannedJob& planned, const EstimateContext& context) const override {
     const int levels = data(planned.job).parameters.levels;
     if (!planned.after.empty() && !context.plan[planned.after.front()].up_to_date)

@@ -78,11 +78,32 @@ TEST_F(JobInputsTest, ADamagedRunIsNoModel) {
   EXPECT_EQ(models_of(whole), (std::vector<std::string>{"a"}));
 }
 
-TEST_F(JobInputsTest, WithoutModelsThereIsNothingToBeginWith) {
+TEST_F(JobInputsTest, WithoutModelsThereIsNoLibrary) {
   Job whole = library();
   EXPECT_THROW(resolve(whole), io::Error);
+}
+
+TEST_F(JobInputsTest, WithoutItsDatasetThereIsNoRun) {
   Job triplets = triplets_job("x", folder_ / "none.vtkhdf", "", folder_.path(), {});
-  EXPECT_THROW(resolve(triplets), io::Error);
+  try {
+    resolve(triplets);
+    FAIL() << "resolved the inputs of a dataset that was never made";
+  } catch (const io::Error& error) {
+    EXPECT_EQ(error.file(), triplets.output);
+    EXPECT_EQ(error.problem(), "there is no dataset to make it of");
+    EXPECT_EQ(error.remedy(), "see why the jobs before it failed, and run again");
+  }
+}
+
+TEST_F(JobInputsTest, ADamagedDatasetIsNotAMissingOne) {
+  std::ofstream(folder_ / "x.vtkhdf") << "no dataset";
+  Job triplets = triplets_job("x", folder_ / "x.vtkhdf", "", folder_.path(), {});
+  try {
+    resolve(triplets);
+    FAIL() << "resolved the inputs of a damaged dataset";
+  } catch (const io::Error& error) {
+    EXPECT_EQ(error.file(), folder_ / "x.vtkhdf");
+  }
 }
 
 TEST_F(JobInputsTest, OnlyRunsOfAnotherKeyAreStale) {
