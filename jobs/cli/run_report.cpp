@@ -12,18 +12,13 @@
 namespace semigeo::jobs::cli {
 namespace {
 
-/// Values of parameters are themselves; what there is not is null.
+/// Returns a reason as JSON. A parameter always has both values; one that there was not is null.
 nlohmann::json reason_json(const Reason& reason) {
   const bool parameter = reason.kind == Reason::Kind::kParameter;
-  const auto value = [&](const std::string& text) -> nlohmann::json {
-    if (text.empty()) return nullptr;
-    if (parameter) return nlohmann::json::parse(text, nullptr, false);
-    return text;
-  };
   nlohmann::json document = {{"kind", name_of(reason.kind)}};
   if (parameter) document["name"] = reason.parameter;
-  if (parameter || !reason.before.empty()) document["before"] = value(reason.before);
-  if (parameter || !reason.now.empty()) document["now"] = value(reason.now);
+  if (parameter || !reason.before.is_null()) document["before"] = reason.before;
+  if (parameter || !reason.now.is_null()) document["now"] = reason.now;
   return document;
 }
 
@@ -44,7 +39,7 @@ void add_to(nlohmann::json& document, const PlannedJob& planned, nlohmann::json&
   document[stands_for_scan ? "scans" : "jobs"].push_back(std::move(entry));
 }
 
-/// Prints what the jobs of one kind tell, heading by heading.
+/// Prints the reports of the jobs of one kind, heading by heading.
 void print_reports(const RunResult& result, const JobKind& kind) {
   std::vector<std::pair<std::size_t, JobReport>> reports;
   for (std::size_t i = 0; i < result.plan.size(); ++i) {
@@ -69,7 +64,7 @@ std::vector<const JobKind*> kinds_of(const std::vector<PlannedJob>& plan) {
   return kinds;
 }
 
-/// "5 scans: 3 would run, 2 up to date".
+/// Prints "5 scans: 3 would run, 2 up to date".
 void print_counts(const std::vector<const PlannedJob*>& plan) {
   const auto up_to_date = std::ranges::count_if(plan, &PlannedJob::up_to_date);
   const auto unreadable =

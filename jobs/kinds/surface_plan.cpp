@@ -19,14 +19,14 @@ namespace {
 namespace fs = std::filesystem;
 using Kind = Reason::Kind;
 
-/// What differs between what a dataset was made of and what the job would make it of.
-std::vector<Reason> differences(const io::DatasetOrigin& origin, const Job& job,
-                                const std::string& parameters_json) {
+/// Returns what differs between what a dataset was made of and what the job would make it of.
+std::vector<Reason> differences(const io::DatasetOrigin& origin, const Job& job) {
   std::vector<Reason> reasons;
   const std::string& input_xxh3 = surface_data(job).input_xxh3;
   if (origin.input_xxh3 != input_xxh3)
     reasons.push_back({.kind = Kind::kScan, .before = origin.input_xxh3, .now = input_xxh3});
-  std::ranges::move(parameter_differences(origin.parameters_json, parameters_json),
+  const auto parameters_before = nlohmann::json::parse(origin.parameters_json, nullptr, false);
+  std::ranges::move(parameter_differences(parameters_before, json_of(surface_data(job).parameters)),
                     std::back_inserter(reasons));
   // What this program would have called the same thing says whether it would have made the same.
   if (origin.job_key != surface_key(job.name, origin.input_xxh3, origin.parameters_json))
@@ -34,22 +34,22 @@ std::vector<Reason> differences(const io::DatasetOrigin& origin, const Job& job,
   return reasons;
 }
 
-std::vector<Reason> reasons_of_dataset(const Job& job, const std::string& parameters_json) {
+std::vector<Reason> reasons_of_dataset(const Job& job) {
   try {
-    return differences(io::read_origin(job.output), job, parameters_json);
+    return differences(io::read_origin(job.output), job);
   } catch (const io::Error& error) {
     return {{.kind = Kind::kUnusableDataset, .now = error.problem()}};
   }
 }
 
 /// Compares the dataset in the archive, if there is one, with what the job would make.
-void judge_dataset(PlannedJob& planned, const std::string& parameters_json, DigestCache& cache) {
+void judge_dataset(PlannedJob& planned, DigestCache& cache) {
   const Job& job = planned.job;
   std::error_code ignored;
   if (!fs::exists(job.output, ignored)) {
     planned.reasons = {{.kind = Kind::kNoDataset}};
   } else if (const auto keys = cache.dataset_keys(job.name); !keys || keys->job_key != job.key) {
-    planned.reasons = reasons_of_dataset(job, parameters_json);
+    planned.reasons = reasons_of_dataset(job);
   } else if (!fs::exists(io::sidecar_of(job.output), ignored)) {
     planned.reasons = {{.kind = Kind::kNoSidecar}};
     surface_data(planned.job).sidecar_only = true;
@@ -63,7 +63,7 @@ std::string text_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Whether the sidecar says what it must, of a dataset that is whole.
+/// Returns whether the sidecar of a whole dataset says what it must.
 bool sidecar_is_right(const fs::path& dataset) {
   return text_of(io::sidecar_of(dataset)) == io::sidecar_text(dataset);
 }
@@ -99,7 +99,7 @@ std::vector<PlannedJob> plan_surfaces(const fs::path& archive, const std::vector
     job.name = names[i];
     job.output = dataset_path(archive, job.name);
     job.key = surface_key(job.name, surface_data(job).input_xxh3, parameters_json);
-    if (is_readable(plan[i])) judge_dataset(plan[i], parameters_json, cache);
+    if (is_readable(plan[i])) judge_dataset(plan[i], cache);
   }
   return plan;
 }

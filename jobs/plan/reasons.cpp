@@ -1,7 +1,6 @@
 #include "jobs/plan/reasons.hpp"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <set>
 
 namespace semigeo::jobs {
@@ -9,18 +8,17 @@ namespace {
 
 using Kind = Reason::Kind;
 
-std::string value_in(const nlohmann::json& parameters, const std::string& name) {
-  const auto found = parameters.find(name);
-  return found == parameters.end() ? "" : found->dump();
+/// Returns a digest, a version or words.
+std::string text_in(const nlohmann::json& value) {
+  return value.is_string() ? value.get<std::string>() : "";
 }
 
-nlohmann::json object_in(const std::string& text) {
-  nlohmann::json document = nlohmann::json::parse(text, nullptr, false);
-  return document.is_object() ? document : nlohmann::json::object();
+std::string shown(const nlohmann::json& value) {
+  return value.is_null() ? "none" : value.dump();
 }
 
-std::string shown(const std::string& value) {
-  return value.empty() ? "none" : value;
+nlohmann::json value_in(const nlohmann::json& parameters, const std::string& name) {
+  return parameters.is_object() ? parameters.value(name, nlohmann::json()) : nlohmann::json();
 }
 
 }  // namespace
@@ -56,35 +54,35 @@ std::string_view name_of(Kind kind) {
 }
 
 std::string in_words(const Reason& reason) {
+  const std::string before = text_in(reason.before);
+  const std::string now = text_in(reason.now);
   switch (reason.kind) {
     case Kind::kNoDataset:
       return "no dataset yet";
     case Kind::kUnusableDataset:
     case Kind::kDamagedArrays:
-      return "dataset: " + reason.now;
+      return "dataset: " + now;
     case Kind::kScan:
-      return "scan: other bytes; XXH3 " + reason.before + ", now " + reason.now;
+      return "scan: other bytes; XXH3 " + before + ", now " + now;
     case Kind::kParameter:
       return "parameter " + reason.parameter + ": " + shown(reason.before) + ", now " +
              shown(reason.now);
     case Kind::kProgram:
-      return "program: what made the dataset, version " + reason.before +
-             ", computed something else";
+      return "program: what made the dataset, version " + before + ", computed something else";
     case Kind::kNoSidecar:
       return ".xdmf: missing; it is made from the dataset";
     case Kind::kDamagedSidecar:
       return ".xdmf: does not say what the dataset holds; it is made from the dataset";
     case Kind::kNoOutput:
-      return "no " + reason.before + " yet";
+      return "no " + before + " yet";
     case Kind::kUnusableOutput:
-      return reason.before + ": damaged, incomplete or of another version";
+      return before + ": damaged, incomplete or of another version";
     case Kind::kDamagedOutput:
-      return reason.before + ": " + reason.now;
+      return before + ": " + now;
     case Kind::kInputs:
       break;
   }
-  return reason.now + ", the parameters or the program: not those that the " + reason.before +
-         " was made of";
+  return now + ", the parameters or the program: not those that the " + before + " was made of";
 }
 
 std::string in_short(const std::vector<Reason>& reasons) {
@@ -96,8 +94,8 @@ std::string in_short(const std::vector<Reason>& reasons) {
   const Reason& first = reasons.front();
   if (has(Kind::kNoOutput)) return in_words(first);
   if (has(Kind::kUnusableOutput) || has(Kind::kDamagedOutput))
-    return "the " + first.before + " is damaged, incomplete or of another version";
-  if (has(Kind::kInputs)) return first.now + ", the parameters or the program changed";
+    return "the " + text_in(first.before) + " is damaged, incomplete or of another version";
+  if (has(Kind::kInputs)) return text_in(first.now) + ", the parameters or the program changed";
   if (has(Kind::kNoSidecar)) return "its .xdmf is missing";
   if (has(Kind::kDamagedSidecar)) return "its .xdmf is damaged";
   std::vector<std::string> changed;
@@ -110,19 +108,19 @@ std::string in_short(const std::vector<Reason>& reasons) {
   return text + " changed";
 }
 
-std::vector<Reason> parameter_differences(const std::string& before, const std::string& now) {
-  const auto old_values = object_in(before);
-  const auto new_values = object_in(now);
+std::vector<Reason> parameter_differences(const nlohmann::json& before, const nlohmann::json& now) {
   std::set<std::string> names;
-  for (const auto& values : {old_values, new_values})
-    for (const auto& [name, value] : values.items()) names.insert(name);
+  for (const nlohmann::json* values : {&before, &now})
+    if (values->is_object())
+      for (const auto& [name, value] : values->items()) names.insert(name);
   std::vector<Reason> differences;
   for (const std::string& name : names) {
     Reason reason{.kind = Kind::kParameter,
                   .parameter = name,
-                  .before = value_in(old_values, name),
-                  .now = value_in(new_values, name)};
-    if (reason.before != reason.now) differences.push_back(std::move(reason));
+                  .before = value_in(before, name),
+                  .now = value_in(now, name)};
+    // As JSON values, 1 and 1.0 would be the same.
+    if (reason.before.dump() != reason.now.dump()) differences.push_back(std::move(reason));
   }
   return differences;
 }

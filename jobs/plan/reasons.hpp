@@ -1,46 +1,51 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace semigeo::jobs {
 
-/// One thing because of which a job runs.
+/// One reason why a job runs.
 struct Reason {
   enum class Kind {
     kNoDataset,
-    kUnusableDataset,  ///< damaged, incomplete, of another format
+    kUnusableDataset,  ///< The dataset is damaged, incomplete or of another format.
     kDamagedArrays,
-    kScan,       ///< it has other bytes than the one that the dataset was made of
-    kParameter,  ///< it has another value
-    kProgram,    ///< it makes other bytes of the same scan and parameters
+    kScan,       ///< The scan has other bytes than the one that the dataset was made of.
+    kParameter,  ///< A parameter has another value.
+    kProgram,    ///< The program makes other bytes of the same scan and parameters.
     kNoSidecar,
     kDamagedSidecar,
-    // Of what is made of datasets. `before` is what the output is called.
+    // These are for outputs that are made of datasets. `before` is what the output is called.
     kNoOutput,
-    kUnusableOutput,  ///< damaged, incomplete, of another version
+    kUnusableOutput,  ///< The output is damaged, incomplete or of another version.
     kDamagedOutput,
-    kInputs  ///< what it was made of (`now`), the parameters or the program
+    kInputs  ///< The inputs (named by `now`), the parameters or the program have changed.
   };
   Kind kind;
-  std::string parameter = {};  ///< its name
-  std::string before = {};     ///< a digest, a JSON value (empty: there was none), a version
-  std::string now = {};        ///< likewise; of what is unusable or damaged: what is wrong with it
+  std::string parameter = {};  ///< Name of the parameter.
+  /// The value of the parameter before (null: there was none), the digest of the scan before, the
+  /// version of the program before, or what the output is called.
+  nlohmann::json before = {};
+  /// The value or digest now, the name of the inputs, or what is wrong with the file.
+  nlohmann::json now = {};
   friend bool operator==(const Reason&, const Reason&) = default;
 };
 
-/// "scan", "parameter", "no dataset", ...: for programs.
+/// Returns the name of a kind for programs: "scan", "parameter", "no dataset", ...
 std::string_view name_of(Reason::Kind kind);
 
-/// "parameter levels: 8, now 20".
+/// Returns the reason as a phrase with all details: "parameter levels: 8, now 20".
 std::string in_words(const Reason& reason);
 
-/// All of them as one phrase: "the scan and the parameters changed". Empty for none.
+/// Returns all reasons as one phrase: "the scan and the parameters changed". It is empty if there
+/// is no reason.
 std::string in_short(const std::vector<Reason>& reasons);
 
-/// The parameters that differ between two texts of to_json(SurfaceParameters), by name. What cannot
-/// be understood has no parameters.
-std::vector<Reason> parameter_differences(const std::string& before, const std::string& now);
+/// Returns a reason for each parameter that differs between two JSON objects, sorted by name. A
+/// value that is no object has no parameters.
+std::vector<Reason> parameter_differences(const nlohmann::json& before, const nlohmann::json& now);
 
 }  // namespace semigeo::jobs

@@ -88,13 +88,4 @@ Owner from_json(const ParameterTable<Owner>& table, const nlohmann::json& json) 
   }
 }
 
-/// Parses the text of parameters. Throws std::runtime_error if it is no JSON.
-inline nlohmann::json parsed_parameters(const std::string& text) {
-  try {
-    return nlohmann::json::parse(text);
-  } catch (const nlohmann::json::exception& e) {
-    throw std::runtime_error(std::string("are no parameters: ") + e.what());
-  }
-}
-
 }  // namespace semigeo::jobs

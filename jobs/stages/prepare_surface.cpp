@@ -37,8 +37,8 @@ void fill(PreparedSurface& prepared, std::int64_t max_edges, const engine::RunCo
   prepared.result.holes = filled.counts;
 }
 
-/// Where to begin a search: nothing farther away than the nearest of the faces round a vertex needs
-/// a look. The margin is for rounding; what is found does not depend on the limit.
+/// Returns the distance within which a search must look: that of the nearest face around a vertex,
+/// with a margin for rounding. The result of the search does not depend on it.
 double search_limit(const Surface& surface, std::int32_t vertex, const Eigen::Vector3d& p) {
   double nearest2 = std::numeric_limits<double>::infinity();
   for (const std::int32_t h : kernels::outgoing(surface, vertex)) {
@@ -51,7 +51,8 @@ double search_limit(const Surface& surface, std::int32_t vertex, const Eigen::Ve
   return 1.001 * std::sqrt(nearest2) + 1e-30;
 }
 
-/// Distances of all vertices before decimation from what is left of them, block by block.
+/// Measures the distances from all vertices before decimation to the decimated surface, block by
+/// block.
 kernels::DistanceSummary measure(const kernels::DecimatedSurface& decimated,
                                  std::span<const Eigen::Vector3f> points,
                                  const engine::RunContext& context) {
@@ -78,7 +79,7 @@ kernels::DistanceSummary measure(const kernels::DecimatedSurface& decimated,
   return sum;
 }
 
-/// Marks of the faces of `after` by the nearest face of `before`.
+/// Returns the mark of each face of `after`, taken from the nearest face of `before`.
 std::vector<std::uint8_t> nearest_marks(const kernels::DecimatedSurface& after,
                                         const Surface& before,
                                         const std::vector<std::uint8_t>& marks,
@@ -145,10 +146,6 @@ nlohmann::json json_of(const PreparationResult& result, const PreparationOptions
     json["decimation_distance_mean"] = result.distance.mean();
   }
   return json;
-}
-
-std::string to_json(const PreparationResult& result, const PreparationOptions& options) {
-  return json_of(result, options).dump();
 }
 
 PreparedSurface prepare_surface(Surface surface, const PreparationOptions& options,

@@ -35,11 +35,9 @@ struct PreparationResult {
   bool operator==(const PreparationResult&) const = default;
 };
 
-/// Returns what was asked for and done as JSON with sorted keys, an empty object if nothing was.
+/// Returns the counts of the steps that the options ask for as JSON with sorted keys. The object is
+/// empty if they ask for none.
 nlohmann::json json_of(const PreparationResult& result, const PreparationOptions& options);
-
-/// Returns that JSON as text.
-std::string to_json(const PreparationResult& result, const PreparationOptions& options);
 
 /// A prepared surface and what was done to it.
 struct PreparedSurface {
@@ -49,9 +47,9 @@ struct PreparedSurface {
   PreparationResult result;
 };
 
-/// Fills holes, then decimates, and returns the result. A decimated face counts as filled if its
-/// centroid lies nearest to one that was. The result does not depend on the number of threads.
-/// Source: thesis 5.1.
+/// Fills holes, then decimates, and returns the result. A face of the decimated
+/// surface counts as filled if the face nearest to its centroid was filled. The result does not
+/// depend on the number of threads. Source: thesis 5.1.
 PreparedSurface prepare_surface(kernels::Surface surface, const PreparationOptions& options,
                                 const engine::RunContext& context);
 

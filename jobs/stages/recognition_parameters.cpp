@@ -5,7 +5,7 @@
 namespace semigeo::jobs {
 namespace {
 
-/// No option sets them: the rows have keys only.
+/// The rows have keys only, because no option sets these parameters.
 const ParameterTable<RecognitionParameters>& table() {
   using Recognition = RecognitionParameters;
   using Integer = NumberIn<Recognition, int>;
@@ -39,10 +39,6 @@ std::string to_json(const RecognitionParameters& parameters) {
 
 RecognitionParameters recognition_parameters_from_json(const nlohmann::json& json) {
   return from_json(table(), json);
-}
-
-RecognitionParameters recognition_parameters_from_json(const std::string& text) {
-  return recognition_parameters_from_json(parsed_parameters(text));
 }
 
 }  // namespace semigeo::jobs

@@ -30,7 +30,4 @@ std::string to_json(const RecognitionParameters& parameters);
 /// its type.
 RecognitionParameters recognition_parameters_from_json(const nlohmann::json& json);
 
-/// Reads the text that `to_json` returns, in the same way.
-RecognitionParameters recognition_parameters_from_json(const std::string& text);
-
 }  // namespace semigeo::jobs

@@ -32,8 +32,4 @@ SearchParameters search_parameters_from_json(const nlohmann::json& json) {
   return from_json(search_parameter_table(), json);
 }
 
-SearchParameters search_parameters_from_json(const std::string& text) {
-  return search_parameters_from_json(parsed_parameters(text));
-}
-
 }  // namespace semigeo::jobs

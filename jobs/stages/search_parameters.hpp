@@ -34,7 +34,4 @@ std::string to_json(const SearchParameters& parameters);
 /// its type.
 SearchParameters search_parameters_from_json(const nlohmann::json& json);
 
-/// Reads the text that `to_json` returns, in the same way.
-SearchParameters search_parameters_from_json(const std::string& text);
-
 }  // namespace semigeo::jobs

@@ -25,7 +25,7 @@ class ParallelEncoder {
   ParallelEncoder(engine::Workers& workers, io::Compression compression)
       : workers_(workers), compression_(compression) {}
 
-  /// `target` is filled by `run` and must live until then, as must what `view` points to.
+  /// Adds an array. `run` fills `target`; until then `target` and the data of `view` must exist.
   void add(const io::ArrayView& view, io::EncodedArray& target) {
     target.shape = io::shape_of(view, compression_);
     target.chunks.resize(target.shape.chunk_count());
@@ -70,7 +70,7 @@ io::EncodedConnectivity encode_connectivity(const LevelConnectivity& connectivit
   return encoded;
 }
 
-/// Of level 0: the scan's own order of vertices and faces.
+/// Returns the connectivity of level 0, with vertices and faces in the order of the scan.
 LevelConnectivity first_connectivity(const PreparedSurface& prepared) {
   LevelConnectivity first{
       .triangles = prepared.surface.triangles,
@@ -122,10 +122,10 @@ io::LevelAttributes attributes_of(const LevelFields& fields, int iteration) {
           .remeshed = fields.remeshed};
 }
 
-/// What all levels together came to.
+/// The totals over all levels.
 struct LevelTotals {
   kernels::RemeshCounts remeshed;
-  std::vector<std::int64_t> feature_counts;  ///< of each level
+  std::vector<std::int64_t> feature_counts;  ///< Number of features of each level.
 };
 
 /// Evolves and writes all levels: pass k + 1 runs beside encoding and writing of level k. A pass is
@@ -195,7 +195,7 @@ LevelTotals write_levels(EvolvingSurface& surface, const SurfaceParameters& para
   return totals;
 }
 
-/// The level at which the scan will be recognised.
+/// Selects the level at which the scan will be recognised.
 io::Selection selection(std::vector<std::int64_t> feature_counts, std::optional<int> told) {
   kernels::ScaleSelection scale = kernels::select_scale(feature_counts);
   return {.feature_counts = std::move(feature_counts),
@@ -210,10 +210,6 @@ nlohmann::json json_of(const kernels::RemeshCounts& remeshed) {
   nlohmann::json json;
   for (const io::LevelCount& count : io::kLevelCounts) json[count.name] = remeshed.*count.count;
   return json;
-}
-
-std::string to_json(const kernels::RemeshCounts& remeshed) {
-  return json_of(remeshed).dump();
 }
 
 SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters& parameters,

@@ -40,12 +40,9 @@ struct SurfaceJobResult {
 /// Returns the counts that datasets have as JSON with sorted keys.
 nlohmann::json json_of(const kernels::RemeshCounts& remeshed);
 
-/// Returns that JSON as text.
-std::string to_json(const kernels::RemeshCounts& remeshed);
-
-/// Reads and repairs one scan, evolves it through all levels and writes its dataset, which appears
-/// under its final name only when it is whole and verified. Throws io::Error on an unreadable or
-/// unusable scan, on a scan that changed meanwhile, and when the dataset cannot be written.
+/// Reads and repairs one scan, evolves it through all levels and writes its dataset, which gets
+/// its final name only when it is complete and verified. Throws io::Error if the scan
+/// cannot be read or used, if it has changed meanwhile, or if the dataset cannot be written.
 SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters& parameters,
                                  const engine::RunContext& context);
 

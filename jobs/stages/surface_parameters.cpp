@@ -24,7 +24,7 @@ std::string unit_problem(const std::string& unit) {
   return plain ? std::string() : kRemedy;
 }
 
-/// What is done to a scan before it is smoothed.
+/// Returns the rows for what is done to a scan before it is smoothed.
 Table preparation_rows() {
   using Options = PreparationOptions;
   constexpr auto kGroup = &Surface::preparation;
@@ -47,7 +47,7 @@ Table preparation_rows() {
   };
 }
 
-/// Levels, patches and steps.
+/// Returns the rows for levels, patches and steps.
 Table evolution_rows() {
   using Options = EvolutionOptions;
   using kernels::Coordinates;
@@ -98,7 +98,7 @@ Table evolution_rows() {
   };
 }
 
-/// Maxima, and the level that counts.
+/// Returns the rows for features and the level for recognition.
 Table feature_rows() {
   using Options = FeatureOptions;
   constexpr auto kGroup = &Surface::features;
@@ -120,7 +120,7 @@ Table feature_rows() {
   };
 }
 
-/// How datasets are stored and labelled.
+/// Returns the rows for how datasets are stored and labelled.
 Table storage_rows() {
   using io::Compression;
   return {
@@ -157,10 +157,6 @@ SurfaceParameters surface_parameters_from_json(const nlohmann::json& json) {
   if (json_of(parameters).dump() != json.dump())
     throw std::runtime_error("are no parameters of this version: " + json.dump());
   return parameters;
-}
-
-SurfaceParameters surface_parameters_from_json(const std::string& text) {
-  return surface_parameters_from_json(parsed_parameters(text));
 }
 
 }  // namespace semigeo::jobs

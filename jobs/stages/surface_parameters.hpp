@@ -37,7 +37,4 @@ std::string to_json(const SurfaceParameters& parameters);
 /// Reads what `json_of` returns. Throws std::runtime_error on every other value.
 SurfaceParameters surface_parameters_from_json(const nlohmann::json& json);
 
-/// Reads the text that `to_json` returns, in the same way.
-SurfaceParameters surface_parameters_from_json(const std::string& text);
-
 }  // namespace semigeo::jobs

@@ -123,9 +123,9 @@ TEST_F(SurfacePlanTest, NamesWhatDiffers) {
   tests::write_obj(folder_ / "in/b.obj", shapes::cube(1, 3));
   const auto plan = plan_scans(config_);
   const Reason levels{
-      .kind = Reason::Kind::kParameter, .parameter = "levels", .before = "1", .now = "2"};
+      .kind = Reason::Kind::kParameter, .parameter = "levels", .before = 1, .now = 2};
   const Reason step{
-      .kind = Reason::Kind::kParameter, .parameter = "step", .before = "1.0", .now = "1.5"};
+      .kind = Reason::Kind::kParameter, .parameter = "step", .before = 1.0, .now = 1.5};
   const Reason scan{
       .kind = Reason::Kind::kScan, .before = before, .now = surface_data(plan[1].job).input_xxh3};
   EXPECT_EQ(plan[0].reasons, (std::vector<Reason>{levels, step}));

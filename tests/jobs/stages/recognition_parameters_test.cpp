@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 
@@ -11,14 +12,15 @@ namespace {
 TEST(RecognitionParametersTest, AreReadBack) {
   const RecognitionParameters unusual = {
       .levels = 7, .most_features = 17, .torsion = false, .samples = 170, .least_reach = 1.0 / 3};
-  const RecognitionParameters read = recognition_parameters_from_json(to_json(unusual));
+  const RecognitionParameters read = recognition_parameters_from_json(json_of(unusual));
   EXPECT_EQ(read.levels, unusual.levels);
   EXPECT_EQ(read.most_features, unusual.most_features);
   EXPECT_EQ(read.torsion, unusual.torsion);
   EXPECT_EQ(read.samples, unusual.samples);
   EXPECT_EQ(read.least_reach, unusual.least_reach);
-  for (const std::string text : {"", "{}", "[]", R"({"levels":3})"})
-    EXPECT_THROW(recognition_parameters_from_json(text), std::runtime_error) << text;
+  for (const std::string text : {"{}", "[]", R"({"levels":3})"})
+    EXPECT_THROW(recognition_parameters_from_json(nlohmann::json::parse(text)), std::runtime_error)
+        << text;
 }
 
 }  // namespace
