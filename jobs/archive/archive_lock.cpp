@@ -49,7 +49,7 @@ std::optional<Owner> owner_in(const std::string& text) {
   }
 }
 
-/// Of a lock that is open; empty if it cannot be read.
+/// Returns the text of an open lock, or an empty text if it cannot be read.
 std::string content_of(const engine::Descriptor& lock) {
   std::array<char, 4096> buffer;
   const ssize_t count = pread(lock.get(), buffer.data(), buffer.size(), 0);
@@ -74,7 +74,7 @@ std::string content_of(const engine::Descriptor& lock) {
   throw LockedError(file, "", who, "wait until it ends, or end it");
 }
 
-/// Gives a finished file its name unless that is taken; whether it was not.
+/// Gives a finished file its name unless the name is taken. Returns whether it was free.
 bool place(const fs::path& from, const fs::path& to) {
   if (link(from.c_str(), to.c_str()) == 0) return true;
   const int error = errno;
@@ -88,8 +88,8 @@ bool place(const fs::path& from, const fs::path& to) {
   fail(to, error);
 }
 
-/// Waits for the right to replace this very file, which lasts until it is closed. False if the file
-/// system knows no such right.
+/// Waits for the right to replace this very file, which lasts until it is closed. Returns false if
+/// the file system has no such locks.
 bool guard(const engine::Descriptor& lock) {
   struct flock whole {};
   whole.l_type = F_WRLCK;
@@ -106,8 +106,8 @@ bool is_at(const engine::Descriptor& lock, const fs::path& file) {
          opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
 }
 
-/// Puts `ours` in the place of a dead owner's lock; LockedError if the owner is not dead. False if
-/// meanwhile the lock was freed or taken: then all begins again.
+/// Replaces the lock of a dead owner by `ours`. Throws LockedError if the owner is not dead.
+/// Returns false if the lock was freed or taken meanwhile; then the caller begins again.
 bool take_over(const fs::path& ours, const fs::path& file) {
   const engine::Descriptor lock = engine::open_file(file, O_RDWR);
   if (!lock && errno == ENOENT) return false;

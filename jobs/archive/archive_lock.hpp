@@ -9,21 +9,22 @@
 
 namespace semigeo::jobs {
 
-/// Somebody else has the archive: says who, since when, and what to do.
+/// The error when another process has the archive. Its text says which process, since when, and
+/// what to do.
 class LockedError : public io::Error {
  public:
   using io::Error::Error;
 };
 
-/// One run at a time per archive: the file ARCHIVE/lock, which names its owner (host, boot, process
-/// and when that started) and lives as long as the owner does. What a dead process of this host
-/// left is taken over; of several that try at once one gets it.
+/// Lets one run at a time use an archive. The lock is the file ARCHIVE/lock, which names its owner
+/// (host, boot, process and the start of the process) and exists as long as this object. The lock
+/// of a dead process of this host is taken over. If several processes try at once, one gets it.
 class ArchiveLock {
  public:
-  /// The archive must exist. LockedError if a living process of this host has it, one of another
-  /// host, or one that cannot be made out; io::Error if the lock cannot be written.
+  /// Locks an archive, which must exist. Throws LockedError if the owner of the lock is alive, is
+  /// on another host, or is unknown. Throws io::Error if the lock cannot be written.
   explicit ArchiveLock(const std::filesystem::path& archive);
-  /// Frees the archive; not in a child that was forked from the owner.
+  /// Frees the archive. It does nothing in a child that was forked from the owner.
   ~ArchiveLock();
   ArchiveLock(const ArchiveLock&) = delete;
   ArchiveLock& operator=(const ArchiveLock&) = delete;
@@ -33,12 +34,14 @@ class ArchiveLock {
   ProcessIdentity owner_;
 };
 
+/// The owner of a lock.
 struct LockOwner {
   ProcessIdentity process;
-  std::string since;  ///< "2024-05-31T21:00:00Z"
+  std::string since;  ///< Time of locking, "2024-05-31T21:00:00Z".
 };
 
-/// Who has the archive; nobody if the lock is a dead process's, or cannot be read.
+/// Returns who has the archive. Returns nothing if there is no lock, if its owner is dead, or if it
+/// cannot be read.
 std::optional<LockOwner> lock_owner(const std::filesystem::path& archive);
 
 }  // namespace semigeo::jobs

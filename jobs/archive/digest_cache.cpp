@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kFileName = "digests.txt";
 constexpr std::int64_t kNanoseconds = 1'000'000'000;
-/// Coarsest step of the times of a file system in use.
+/// The coarsest step of the times of file systems in use.
 constexpr std::int64_t kRacy = 2 * kNanoseconds;
 constexpr std::string_view kNoJob = "-";
 
@@ -31,13 +31,13 @@ std::int64_t nanoseconds(const timespec& time) {
   return std::int64_t{time.tv_sec} * kNanoseconds + time.tv_nsec;
 }
 
-/// First line of the file: what another version wrote, or a damaged disk, begins otherwise.
+/// Returns the first line of the file. Files of other versions and damaged files begin otherwise.
 std::string head_of(std::string_view body) {
   return "semigeo-digests 1 " + std::to_string(io::kDatasetFormatVersion) + ' ' +
          io::xxh3_of_text(body) + '\n';
 }
 
-/// Takes what stands before the next space.
+/// Removes the text before the next space from the line and returns it.
 std::string_view next_word(std::string_view& line) {
   const std::size_t end = std::min(line.find(' '), line.size());
   const std::string_view word = line.substr(0, end);
@@ -72,7 +72,7 @@ fs::path dataset_path(const fs::path& archive, const std::string& name) {
   return archive / "scans" / (name + ".vtkhdf");
 }
 
-/// What was read in a file, and between which stamps.
+/// The content that was read from a file, and its stamps before and after.
 struct DigestCache::Reading {
   DatasetKeys keys;
   std::int64_t begun = 0;

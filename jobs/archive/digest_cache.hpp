@@ -11,12 +11,12 @@
 
 namespace semigeo::jobs {
 
-/// What a file that was not changed is known by. The time of the last change of state is the
-/// kernel's own: setting the time of the last modification back changes it.
+/// The properties by which an unchanged file is recognised. The time of the last change of state is
+/// set by the kernel alone: setting back the time of the last modification changes it.
 struct FileStamp {
   std::int64_t size = 0;
-  std::int64_t modified = 0;  ///< In nanoseconds since 1970, as the next.
-  std::int64_t changed = 0;
+  std::int64_t modified = 0;  ///< Time of the last modification, in nanoseconds since 1970.
+  std::int64_t changed = 0;   ///< Time of the last change of state, in nanoseconds since 1970.
   std::uint64_t inode = 0;
   friend bool operator==(const FileStamp&, const FileStamp&) = default;
 };
@@ -36,10 +36,11 @@ struct ScanDigest {
   std::string error;
 };
 
-/// Spares planning the reading of what has not changed since the last run. ARCHIVE/digests.txt
-/// holds a line for each scan and dataset: digest, job key, stamp, path. What has another stamp is
-/// read again. What was changed less than two seconds before it was read is not remembered, because
-/// a second change could leave the same times. Only speed depends on the file: it may be removed.
+/// Remembers digests, so that planning need not read files that have not changed since the last
+/// run. ARCHIVE/digests.txt holds a line for each scan and dataset: digest, job key, stamp, path. A
+/// file with another stamp is read again. A file that was changed less than two seconds before it
+/// was read is not remembered, because a second change could leave the same times. Only speed
+/// depends on digests.txt: it may be removed.
 class DigestCache {
  public:
   /// Returns the time in nanoseconds since 1970.
@@ -75,8 +76,9 @@ class DigestCache {
 
   std::filesystem::path archive_;
   Clock now_;
-  std::map<std::string, Entry> entries_;  ///< By the path of a scan, by the name of a dataset.
-  std::string text_;                      ///< Text of the archive's file.
+  std::map<std::string, Entry>
+      entries_;       ///< The key is the path of a scan or the name of a dataset.
+  std::string text_;  ///< Text of the archive's file.
 };
 
 /// Returns where an archive has the dataset of this name.

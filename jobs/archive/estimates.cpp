@@ -29,10 +29,10 @@ constexpr double kUnknownFileBytes = 20;  // of formats not listed: rather too m
 constexpr double kMostOff = 20;           // factor between a rate that is learned and the built-in
 constexpr std::size_t kFewestJobs = 3;
 constexpr std::size_t kMostJobs = 200;
-/// Of smaller scans what does not grow with them costs more than what does.
+/// In smaller scans, the costs that do not grow with the scan are larger than those that do.
 constexpr std::int64_t kFewestVertices = 5000;
 
-/// Bytes of a file a vertex, which comes with two triangles.
+/// The bytes of a file for each vertex, with its two triangles.
 struct FormatRate {
   std::string_view format;
   double bytes;
@@ -59,8 +59,8 @@ double built_in_file_bytes(const std::string& format) {
   return found == kFormats.end() ? kUnknownFileBytes : found->bytes;
 }
 
-/// A rate that was measured, and how much it counts.
-struct Voice {
+/// A rate that was measured, and its weight.
+struct MeasuredRate {
   double rate;
   double weight;
 };
@@ -69,30 +69,30 @@ bool is_credible(double rate, double built_in) {
   return rate >= built_in / kMostOff && rate <= built_in * kMostOff;
 }
 
-/// The rate that half of the weight is not above; nothing if there are too few to tell.
-std::optional<double> median(std::vector<Voice> voices) {
-  if (voices.size() < kFewestJobs) return std::nullopt;
-  std::ranges::sort(voices, {}, &Voice::rate);
+/// Returns the weighted median of the rates, or nothing if there are too few.
+std::optional<double> median(std::vector<MeasuredRate> rates) {
+  if (rates.size() < kFewestJobs) return std::nullopt;
+  std::ranges::sort(rates, {}, &MeasuredRate::rate);
   double weight = 0;
-  for (const Voice& voice : voices) weight += voice.weight;
+  for (const MeasuredRate& measured : rates) weight += measured.weight;
   double below = 0;
-  for (const Voice& voice : voices) {
-    below += voice.weight;
-    if (2 * below >= weight) return voice.rate;
+  for (const MeasuredRate& measured : rates) {
+    below += measured.weight;
+    if (2 * below >= weight) return measured.rate;
   }
-  return voices.back().rate;
+  return rates.back().rate;
 }
 
-/// The median of `rate` over the jobs for which it is credible.
+/// Returns the median of `rate` over the jobs for which it is credible.
 template <typename Rate>
 std::optional<double> learn(std::span<const JobEnded> jobs, double built_in, const Rate& rate) {
-  std::vector<Voice> voices;
+  std::vector<MeasuredRate> rates;
   for (const JobEnded& job : jobs) {
     const double measured = rate(job);
     if (is_credible(measured, built_in))
-      voices.push_back({measured, static_cast<double>(job.vertices)});
+      rates.push_back({measured, static_cast<double>(job.vertices)});
   }
-  return median(std::move(voices));
+  return median(std::move(rates));
 }
 
 Rates learn_costs(std::span<const JobEnded> jobs) {

@@ -26,7 +26,7 @@ bool is_safe(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '-' || c == '_';
 }
 
-/// Whether "__" in the name could come from anything but a joint of folders.
+/// Returns whether "__" in the name could come from anything but the joining of folders.
 bool has_misleading_underscore(const std::string& path) {
   return path.find("__") != std::string::npos || path.find("_/") != std::string::npos ||
          path.find("/_") != std::string::npos;
@@ -61,7 +61,7 @@ bool is_hidden(const fs::path& path) {
   return path.filename().string().starts_with('.');
 }
 
-/// By which two paths to one file are known; links that lead nowhere or in circles are themselves.
+/// Returns the same path for every path to one file. Broken and circular links keep their own path.
 fs::path identity(const fs::path& file) {
   std::error_code error;
   fs::path canonical = fs::weakly_canonical(file, error);
@@ -80,9 +80,9 @@ bool is_dataset(const fs::path& file) {
   return file.extension() == ".vtkhdf";
 }
 
-/// What is looked for, and where not.
+/// The kinds of files that are searched, and the folders that are not.
 struct Search {
-  bool datasets = false;  ///< as well as scans
+  bool datasets = false;  ///< Datasets are found as well as scans.
   std::vector<fs::path> passed_over;
 
   bool wants(const fs::path& file) const {
@@ -95,7 +95,8 @@ struct Search {
   }
 };
 
-/// The scans of one folder, and in `folders` those below it. Returns why it cannot be searched.
+/// Appends the scans of a folder to `files` and its folders to `folders`. Returns why it cannot be
+/// searched.
 std::error_code list_folder(const fs::path& folder, const Search& search,
                             std::vector<fs::path>& files, std::vector<fs::path>& folders) {
   std::error_code error;

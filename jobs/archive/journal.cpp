@@ -30,7 +30,7 @@ std::string checksum(std::string_view text) {
   return io::xxh3_of_text(text).substr(0, kChecksumDigits);
 }
 
-/// The fields of an event, in the order in which they are written; the same for both directions.
+/// Visits the fields of an event in the order in which they are written, for writing and reading.
 template <typename Visit>
 void for_each_field(RunStarted& event, const Visit& visit) {
   visit("version", event.version);
@@ -120,7 +120,7 @@ void read_event(const Json& document, std::optional<JournalEvent>& found) {
   found = std::move(event);
 }
 
-/// Whether the line is not damaged; what it says goes to `visit`, unless it is not understood.
+/// Returns whether the line is whole. Calls `visit` with its entry if the event is known.
 bool read_line(std::string_view line, const std::function<void(const JournalEntry&)>& visit) {
   if (line.empty()) return true;  // a torn line that was ended twice
   if (!is_whole(line)) return false;

@@ -10,40 +10,43 @@
 
 namespace semigeo::jobs {
 
+/// The event at the start of a run.
 struct RunStarted {
-  std::string version = {};  ///< of the program
+  std::string version = {};  ///< Version of the program.
   std::string host = {};
   std::int64_t pid = 0;
   std::int64_t threads = 0;
-  std::int64_t jobs = 0;  ///< to be done
+  std::int64_t jobs = 0;  ///< Number of jobs to be done.
   std::int64_t up_to_date = 0;
-  std::int64_t input_bytes = 0;  ///< of the scans that are to be read
+  std::int64_t input_bytes = 0;  ///< Size of the scans that are to be read.
   friend bool operator==(const RunStarted&, const RunStarted&) = default;
 };
 
+/// The event at the start of a job.
 struct JobStarted {
   std::string job = {};  ///< "surface <name of the dataset>", "library library.h5", ...
-  std::string key = {};  ///< under which its output will be up to date
+  std::string key = {};  ///< Key with which its output will be up to date.
   friend bool operator==(const JobStarted&, const JobStarted&) = default;
 };
 
-/// What is not known is zero or empty.
+/// The event at the end of a job. Values that are not known are zero or empty.
 struct JobEnded {
   std::string job = {};
   std::string key = {};
-  std::string state = {};  ///< "done", "failed", "skipped", or "up to date" after all
-  std::string error = {};  ///< of a failed or skipped job: one sentence
+  std::string state = {};  ///< "done", "failed", "skipped" or "up to date".
+  std::string error = {};  ///< Why the job failed or was skipped, as one sentence.
   std::string format = {};
   double seconds = 0;
   double cpu_seconds = 0;
-  double peak_bytes = 0;  ///< of memory
+  double peak_bytes = 0;  ///< Largest use of memory.
   std::int64_t vertices = 0;
   std::int64_t levels = 0;
-  std::int64_t input_bytes = 0;  ///< of the scan's file
+  std::int64_t input_bytes = 0;  ///< Size of the scan's file.
   std::int64_t threads = 0;
   friend bool operator==(const JobEnded&, const JobEnded&) = default;
 };
 
+/// The event at the end of a run.
 struct RunEnded {
   std::int64_t done = 0;
   std::int64_t up_to_date = 0;
@@ -53,37 +56,40 @@ struct RunEnded {
   friend bool operator==(const RunEnded&, const RunEnded&) = default;
 };
 
+/// An event of the journal.
 using JournalEvent = std::variant<RunStarted, JobStarted, JobEnded, RunEnded>;
 
-/// A line of ARCHIVE/journal.jsonl: a JSON object that begins with a checksum over the rest of the
-/// line. The journal is for people and for estimates; what is up to date never depends on it.
+/// A line of ARCHIVE/journal.jsonl, which is a JSON object that begins with a checksum over the
+/// rest of the line. The journal is for people and for estimates. It never decides whether an
+/// output is up to date.
 struct JournalEntry {
   JournalEvent event;
   std::string time;  ///< "2024-05-31T21:00:00Z"
-  std::string run;   ///< the same for all events of one run
+  std::string run;   ///< Name of the run, the same for all its events.
 };
 
-/// Appends to the journal of an archive, which must exist. One thread at a time.
+/// Appends to the journal of an archive, which must exist. Only one thread may use it at a time.
 class Journal {
  public:
-  /// `run` is the run's name in every line. Error if the file cannot be opened.
+  /// Opens the journal. Every line names the run `run`. Throws io::Error if the file cannot be
+  /// opened.
   Journal(const std::filesystem::path& archive, std::string run);
 
-  /// Appends one line with the present time, in one write, so that it stands whole among those of
-  /// other writers. A torn line before it, of a run that was killed or a disk that was full, is
-  /// ended first. Error if it cannot be written.
+  /// Appends a line with the present time. It is a single write, so that the line stays whole
+  /// among the lines of other writers. If the last line is incomplete, because a run was killed or
+  /// the disk was full, it is ended first. Throws io::Error if the line cannot be written.
   void write(const JournalEvent& event);
 
  private:
   std::filesystem::path path_;
   std::string run_;
   engine::Descriptor file_;
-  bool torn_ = false;  ///< the last line has no end
+  bool torn_ = false;  ///< The last line has no end.
 };
 
-/// Reads the journal from its beginning and returns how many lines were damaged and passed over.
-/// Events of later versions are passed over too. No journal is an empty one; Error if there is one
-/// that cannot be read. Memory: one line.
+/// Calls `visit` for each entry of the journal, in order, and returns the number of damaged lines,
+/// which are passed over. Events of later versions are passed over too. An absent journal counts as
+/// empty. Throws io::Error if the journal cannot be read. Keeps one line in memory.
 std::int64_t read_journal(const std::filesystem::path& archive,
                           const std::function<void(const JournalEntry&)>& visit);
 

@@ -20,9 +20,9 @@ std::string boot_id() {
   return id;
 }
 
-/// What /proc says of a process.
+/// The status of a process as /proc tells it.
 struct Status {
-  char state = '\0';  ///< '\0': nothing
+  char state = '\0';  ///< '\0' if /proc has no such process.
   std::uint64_t started = 0;
 };
 

@@ -7,21 +7,23 @@
 
 namespace semigeo::jobs {
 
-/// Which process of which boot of which host: unlike a process id, never given twice.
+/// Names a process, its boot and its host. Unlike a process id, no two processes have the same.
 struct ProcessIdentity {
   std::string host;
-  std::string boot_id;  ///< of the kernel; empty where it does not tell
+  std::string boot_id;  ///< Name of the boot; empty if the kernel does not tell it.
   pid_t pid = 0;
-  std::uint64_t started = 0;  ///< clock ticks since the boot; 0 where the kernel does not tell
+  std::uint64_t started = 0;  ///< Clock ticks since the boot; 0 if the kernel does not tell it.
   friend bool operator==(const ProcessIdentity&, const ProcessIdentity&) = default;
 };
 
+/// Returns the identity of the calling process.
 ProcessIdentity this_process();
 
+/// What is known about the life of a process.
 enum class Life { kAlive, kDead, kOnAnotherHost };
 
-/// Whether the process still runs. One that ended but whose parent has not asked about it yet is
-/// dead; one that cannot be looked at is alive.
+/// Returns whether the process still runs. A process that has ended, but for which its parent has
+/// not waited yet, is dead. A process about which the kernel tells nothing is alive.
 Life life_of(const ProcessIdentity& process);
 
 }  // namespace semigeo::jobs

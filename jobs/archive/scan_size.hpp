@@ -6,13 +6,14 @@
 
 namespace semigeo::jobs {
 
-/// What can be told of a scan without reading it.
+/// The format and the size of a scan, known without reading it.
 struct ScanSize {
   std::string format;        ///< "PLY binary", "PLY ascii", "OBJ", "STL binary, gzip", ...
-  std::uintmax_t bytes = 0;  ///< of the file
+  std::uintmax_t bytes = 0;  ///< Size of the file.
 };
 
-/// From the file's size and its first kilobyte. Nothing of what cannot be read.
+/// Returns the format and the size, which need only the first kilobyte of the file. They are empty
+/// and 0 if the file cannot be read.
 ScanSize scan_size(const std::filesystem::path& scan);
 
 }  // namespace semigeo::jobs

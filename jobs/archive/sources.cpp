@@ -32,7 +32,7 @@ bool is_variant(const std::string& name, const std::string& base) {
                           name.starts_with(base + std::string(kMark)));
 }
 
-/// What cannot be looked at is not known to be gone.
+/// Returns whether the scan is gone. A scan about which nothing can be known is not gone.
 bool is_gone(const fs::path& scan) {
   std::error_code error;
   return fs::status(scan, error).type() == fs::file_type::not_found;
@@ -84,8 +84,8 @@ std::vector<std::string> choose_names(
 
   std::vector<std::string> names(scans.size());
   std::set<std::string> taken;
-  /// Gives each scan that has no name yet the first variant of its base, known or the base itself,
-  /// that `suits` it.
+  /// Gives each scan without a name the first variant of its base that `suits` it. Variants are the
+  /// known names and the base itself.
   const auto pass = [&](const auto& suits) {
     for (const std::size_t i : order) {
       const Unnamed& scan = scans[i];

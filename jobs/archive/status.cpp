@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Takes in the journal line by line; every run begins anew.
+/// Reads the journal line by line, and starts again with every run.
 class Reader {
  public:
   explicit Reader(ArchiveStatus& status) : status_(status) {}
@@ -63,7 +63,7 @@ class Reader {
   ArchiveStatus& status_;
   std::string run_;
   std::string last_time_;
-  std::map<std::string, std::string> started_;  ///< jobs that have not ended, and when
+  std::map<std::string, std::string> started_;  ///< Start of jobs that have not ended.
 };
 
 std::int64_t count_datasets(const fs::path& archive) {

@@ -11,32 +11,34 @@
 
 namespace semigeo::jobs {
 
-/// How the last run of an archive stands, by its journal; and whether it still runs, by its lock.
+/// The state of the last run of an archive, as its journal and its lock tell.
 struct ArchiveStatus {
-  std::int64_t datasets = 0;           ///< under final names
-  std::optional<RunStarted> last_run;  ///< nothing: the journal knows of none
-  std::string started;                 ///< when, UTC
-  std::optional<LockOwner> owner;      ///< whoever has the archive now
-  bool ended = false;                  ///< the journal has its end
+  std::int64_t datasets = 0;           ///< Number of complete datasets.
+  std::optional<RunStarted> last_run;  ///< Empty if the journal has no run.
+  std::string started;                 ///< Start of the run in UTC.
+  std::optional<LockOwner> owner;      ///< The process that has the archive now.
+  bool ended = false;                  ///< The journal has the end of the run.
   std::int64_t done = 0;
-  std::map<std::string, std::int64_t> done_by_kind = {};  ///< "surface", "triplets", ...
-  std::int64_t up_to_date = 0;                            ///< some only turned out to be
-  std::int64_t skipped = 0;                               ///< as others had failed
-  std::map<std::string, double> running;      ///< name of a job, seconds since it was started
-  std::map<std::string, std::string> failed;  ///< name of a job, its reason
-  double seconds = 0;                         ///< from its start to its last event, or to now
-  double vertex_levels = 0;                   ///< of jobs that are done
-  std::int64_t bytes_done = 0;                ///< of the scans of jobs that have ended
-  std::int64_t damaged_lines = 0;             ///< of the journal
+  std::map<std::string, std::int64_t> done_by_kind = {};  ///< The key is "surface", "triplets", ...
+  std::int64_t up_to_date = 0;                            ///< Includes jobs that turned out to be.
+  std::int64_t skipped = 0;                   ///< Jobs that need the result of a failed one.
+  std::map<std::string, double> running;      ///< Seconds since the start, by name of the job.
+  std::map<std::string, std::string> failed;  ///< Reason, by name of the job.
+  double seconds = 0;                         ///< Time from the start to the last event, or to now.
+  double vertex_levels = 0;                   ///< Vertices times levels of jobs that are done.
+  std::int64_t bytes_done = 0;                ///< Size of the scans of jobs that have ended.
+  std::int64_t damaged_lines = 0;             ///< Number of damaged lines of the journal.
 
   bool is_running() const { return owner.has_value() && last_run.has_value() && !ended; }
+  /// Returns the number of jobs that have not ended.
   std::int64_t left() const;
   double vertex_levels_per_second() const { return seconds > 0 ? vertex_levels / seconds : 0; }
-  /// Judged by the bytes of the scans; nothing while nothing has ended.
+  /// Returns the time left, judged by the bytes of the scans, or nothing if no job has ended yet.
   std::optional<double> seconds_left() const;
 };
 
-/// Error if the archive is none, or its journal cannot be read.
+/// Reads the state of the last run. Throws io::Error if the folder is no archive, or if its journal
+/// cannot be read.
 ArchiveStatus status_of(const std::filesystem::path& archive);
 
 }  // namespace semigeo::jobs

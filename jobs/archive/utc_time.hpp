@@ -4,9 +4,9 @@
 
 namespace semigeo::jobs {
 
-/// Now, as "2024-05-31T21:00:00Z".
+/// Returns the present time as "2024-05-31T21:00:00Z".
 std::string utc_time();
-/// Seconds from such a time to now; 0 for a text that is none.
+/// Returns the seconds from such a time to now, or 0 if the text is no time.
 double seconds_since(const std::string& utc_time);
 
 }  // namespace semigeo::jobs

@@ -17,8 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The CPU seconds that verifying may take: a thousand times what it takes, for HDF5 goes round in
-/// circles over some damaged files.
+/// Returns the CPU seconds that verifying may take. It is a thousand times what it usually takes;
+/// the limit is needed because HDF5 loops forever on some damaged files.
 double most_seconds(const fs::path& file) {
   constexpr std::uintmax_t kLeast = 2;
   constexpr std::uintmax_t kBytesPerSecond = 10'000'000;
@@ -27,7 +27,7 @@ double most_seconds(const fs::path& file) {
   return static_cast<double>(kLeast + (error ? 0 : bytes / kBytesPerSecond));
 }
 
-/// Reads everything in a file; throws on what is wrong with it.
+/// Reads everything in a file. Throws if something is wrong with it.
 using Verify = void (*)(const fs::path&);
 
 std::string problem_of(const fs::path& file, Verify verify) {

@@ -6,14 +6,15 @@
 
 namespace semigeo::jobs {
 
-/// Reads everything in each dataset (io::Dataset::verify). Returns for each what is wrong with it
-/// as one sentence, or an empty text. Each is read in a child process (engine::ForkedChild),
-/// `at_once` of them at a time (0: one for each core), because HDF5 crashes over some damages, and
-/// two processes do not share its lock. No thread may use HDF5 meanwhile: it would leave that lock
-/// closed for the children.
+/// Reads everything in each dataset (io::Dataset::verify). Returns for each dataset what is wrong
+/// with it as one sentence, or an empty text. Each is read in a child process
+/// (engine::ForkedChild), `at_once` of them at a time (0: one for each core), because HDF5 crashes
+/// on some damaged files, and two processes do not share its lock. No thread may use HDF5
+/// meanwhile: the lock would stay closed in the children.
 std::vector<std::string> verify_datasets(const std::vector<std::filesystem::path>& datasets,
                                          int at_once);
-/// Reads everything in each library (io::HashLibrary::verify) in the same way, one after the other.
+/// Reads everything in each library (io::HashLibrary::verify) in the same way, one library after
+/// the other.
 std::vector<std::string> verify_libraries(const std::vector<std::filesystem::path>& libraries);
 
 }  // namespace semigeo::jobs

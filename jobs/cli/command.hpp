@@ -13,8 +13,8 @@ inline constexpr int kUsage = 2;
 inline constexpr int kStoppedEarly = 75;
 inline constexpr int kLocked = 73;  ///< Another run has the archive.
 
-// Each function adds a command and binds its options. When the command line names the command, it
-// runs and stores its exit code.
+// Each function adds a command and its options. When the command line names the command, it runs
+// and stores its exit code.
 void add_run(CLI::App& app, int& exit_code);
 void add_job(CLI::App& app, int& exit_code);
 void add_status(CLI::App& app, int& exit_code);

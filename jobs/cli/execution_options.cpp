@@ -15,7 +15,7 @@ using Integer = NumberIn<Options, int>;
 
 constexpr auto kLimits = &Options::limits;
 
-/// What the run and its jobs may take.
+/// Returns the rows for the limits of the run and its jobs.
 Table limit_rows() {
   return {
       {.name = "threads",
@@ -33,7 +33,7 @@ Table limit_rows() {
   };
 }
 
-/// What becomes of the run when jobs fail, and when it ends.
+/// Returns the rows for failed jobs and for the end of the run.
 Table end_rows() {
   return {
       {.name = "retries",
@@ -57,7 +57,7 @@ Table end_rows() {
   };
 }
 
-/// Where jobs run, if not on this machine.
+/// Returns the rows for running jobs on other machines.
 Table slurm_rows() {
   constexpr auto kSlurm = &Options::slurm;
   return {
@@ -79,7 +79,7 @@ Table slurm_rows() {
   };
 }
 
-/// What is printed, and whether anything runs at all.
+/// Returns the rows for what is printed, and for runs that only plan.
 Table report_rows() {
   return {
       {.name = "json",
@@ -140,7 +140,7 @@ void add_execution_options(CLI::App& command, ExecutionOptions& options) {
   add_table_options(command, execution_option_table(), options);
 }
 
-void settle(ExecutionOptions& options) {
+void complete(ExecutionOptions& options) {
   if (options.executor != ExecutorKind::kSlurm && !options.slurm.wait)
     throw CLI::ValidationError("--no-wait", "give --executor slurm with it");
   if (options.until.empty()) return;

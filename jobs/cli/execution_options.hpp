@@ -43,6 +43,6 @@ void add_execution_options(CLI::App& command, ExecutionOptions& options);
 
 /// Completes the options when the command line is parsed: a time of day becomes a number of
 /// seconds. Throws CLI::ValidationError if some of them do not go together.
-void settle(ExecutionOptions& options);
+void complete(ExecutionOptions& options);
 
 }  // namespace semigeo::jobs::cli

@@ -24,13 +24,13 @@ struct ExportOptions {
   int level = 0;
   std::string output;
   std::string quality = "mean_curvature";
-  std::string features;  ///< a kind or "all"
-  std::string contours;  ///< a kind
+  std::string features;  ///< A kind of feature, or "all".
+  std::string contours;  ///< A kind of contour.
 };
 
 enum class OutputFormat { ply, csv };
 
-/// By the extension; a surface has no columns that would make it a CSV.
+/// Returns the format that the extension names. A surface cannot be written as CSV.
 OutputFormat format_of(const ExportOptions& options) {
   const bool surface = options.features.empty() && options.contours.empty();
   std::string extension = std::filesystem::path(options.output).extension().string();

@@ -20,7 +20,7 @@ struct InfoOptions {
   bool json = false;
 };
 
-/// A field's extremes over the valid vertices of a level.
+/// The extremes of a field over the valid vertices of a level.
 struct Range {
   float low = 0;
   float high = 0;
@@ -105,7 +105,7 @@ nlohmann::json dataset_json(const std::filesystem::path& path) {
           {"levels", std::move(levels)}};
 }
 
-/// "12 split, 9 collapsed, 1 torn"; what is not zero.
+/// Returns "12 split, 9 collapsed, 1 torn", without the counts that are zero.
 std::string remeshing_in_words(const nlohmann::json& counts) {
   std::string text;
   for (const auto& [name, word] : {std::pair("flipped", "flipped"), std::pair("split", "split"),
@@ -168,7 +168,7 @@ void print_dataset(const nlohmann::json& d) {
   print_features(d);
 }
 
-/// An archive: one line a dataset, from attributes and sizes alone.
+/// Returns the line of a dataset in the list of an archive, from attributes and sizes alone.
 nlohmann::json summary_json(const std::filesystem::path& path) {
   const io::Dataset dataset(path);
   const io::LevelInfo first = dataset.level(0);

@@ -12,7 +12,8 @@
 namespace semigeo::jobs::cli {
 namespace {
 
-/// Where whoever started this process expects the answers; by hand, on standard output.
+/// The descriptor on which the parent process expects the answers. If it is closed, they go to
+/// standard output.
 constexpr int kAnswers = 3;
 
 struct TaskOptions {

@@ -25,22 +25,22 @@ using Models = std::map<std::string, LibraryModel>;
 struct LibraryOptions {
   ExecutionOptions execution;
   std::string library;
-  std::vector<std::string> inputs;  ///< archives and datasets, or names of models
+  std::vector<std::string> inputs;  ///< Archives and datasets, or names of models.
 };
 
-/// Equal for every path to one file.
+/// Returns the same path for every path to one file.
 fs::path resolved(const fs::path& path) {
   std::error_code error;
   fs::path result = fs::weakly_canonical(path, error);
   return error ? fs::absolute(path) : result;
 }
 
-/// Where a library of this name is made.
+/// Returns where the library with this file name is made.
 LibraryPlace place_at(const std::string& library) {
   return place_of(fs::absolute(library).lexically_normal());
 }
 
-/// Of an archive its own one.
+/// Returns the library of an archive, or the file itself.
 std::string library_file(const std::string& file_or_archive) {
   std::error_code ignored;
   if (!fs::is_directory(file_or_archive, ignored)) return file_or_archive;
@@ -52,7 +52,8 @@ bool is_archive(const fs::path& path) {
   return fs::is_directory(path / "scans", ignored);
 }
 
-/// The datasets under their names. Error if two have one name: they would be one model.
+/// Returns the datasets by name. Throws io::Error if two have the same name, because they would be
+/// one model.
 Models models_in(const std::vector<std::string>& inputs) {
   Models models;
   for (const std::string& input : inputs) {
@@ -69,8 +70,8 @@ Models models_in(const std::vector<std::string>& inputs) {
   return models;
 }
 
-/// What the library holds, each to stay as it is. Error if it is of other parameters, or its parts
-/// are gone.
+/// Returns the models of the library, which are kept as they are. Throws io::Error if it was made
+/// with other parameters, or if its parts are gone.
 Models kept_models(const LibraryPlace& place, const RecognitionParameters& parameters) {
   const io::HashLibrary library(place.library);
   constexpr const char* kRemedy = "build it anew: semigeo library build DATASETS --output LIBRARY";
@@ -92,7 +93,8 @@ std::vector<LibraryModel> in_order(const Models& models) {
   return list;
 }
 
-/// Makes the library of the models that `models` names once the library's home is ours.
+/// Makes the library of the models that `models` returns. `models` is called after the folder of
+/// the library was locked.
 int make(LibraryOptions& options, const LibraryPlace& place,
          const std::function<std::vector<LibraryModel>(DigestCache&)>& models) {
   const auto plan_of = [&](DigestCache& cache) {
@@ -189,7 +191,7 @@ int check(const LibraryOptions& options) {
 
 using Action = int (*)(LibraryOptions&);
 
-/// A subcommand that makes a library.
+/// Adds a subcommand that makes a library.
 void add_maker(CLI::App* parent, const char* name, const char* about, const char* inputs,
                const char* what, Action action, int& exit_code) {
   auto options = std::make_shared<LibraryOptions>();
@@ -212,13 +214,13 @@ void add_maker(CLI::App* parent, const char* name, const char* about, const char
   add_execution_options(*command, options->execution);
   command->fallthrough();
   command->callback([options, action, is_build, &exit_code] {
-    settle(options->execution);
+    complete(options->execution);
     if (!is_build) options->library = library_file(options->library);
     exit_code = action(*options);
   });
 }
 
-/// A subcommand that reads one.
+/// Adds a subcommand that reads a library.
 void add_reader(CLI::App* parent, const char* name, const char* about,
                 int (*action)(const LibraryOptions&), int& exit_code) {
   auto options = std::make_shared<LibraryOptions>();

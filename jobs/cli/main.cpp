@@ -11,7 +11,7 @@
 
 namespace {
 
-/// Examples, kept as the footer, stand before everything else: what people come for.
+/// Prints the examples, which are kept as the footer, before everything else.
 class ExamplesFirst : public CLI::Formatter {
  public:
   std::string make_description(const CLI::App* app) const override {
@@ -20,8 +20,8 @@ class ExamplesFirst : public CLI::Formatter {
   std::string make_footer(const CLI::App*) const override { return ""; }
 };
 
-/// A dataset must not get the number of a stream that the caller closed: results would be printed
-/// into it. What stands in for the stream refuses to be written.
+/// Opens standard streams that the caller has closed. Otherwise a dataset could get their number,
+/// and results would be printed into it. The replacement cannot be written.
 void occupy_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(stream, F_GETFD) == -1) open("/dev/null", O_RDONLY);

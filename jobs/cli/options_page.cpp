@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kLineWidth = 120;
 
-/// The keys in JSON of options, by their names with dashes; empty for those that JSON has not.
+/// The keys of options in JSON, by their names with dashes; empty for options without a key.
 using Keys = std::map<std::string, std::string>;
 
 /// Returns the keys of the options of a table.

@@ -25,14 +25,14 @@ struct RecogniseOptions {
   std::vector<fs::path> inputs;  ///< Scenes, and folders of them.
   ExecutionOptions execution;
   std::string library;
-  std::string output;  ///< empty: nothing is kept
+  std::string output;  ///< Folder for the results; empty: they are not kept.
   SearchParameters search;
-  std::optional<double> min_score;  ///< Taken instead of that of `search` if it was given.
+  std::optional<double> min_score;  ///< Replaces that of `search` if it is given.
   std::size_t top = RecogniseReport{}.top;
 };
 
-void settle(RecogniseOptions& options) {
-  settle(options.execution);
+void complete(RecogniseOptions& options) {
+  complete(options.execution);
   if (options.output.empty() && options.execution.executor == ExecutorKind::kSlurm)
     throw CLI::ValidationError("--output", "give a folder that all machines see with Slurm");
   SearchParameters& search = options.search;
@@ -41,7 +41,8 @@ void settle(RecogniseOptions& options) {
     throw CLI::ValidationError("--min-score", "give a number that is not negative");
 }
 
-/// Not the archives at hand, unless they are named: their datasets are the models.
+/// Finds the scenes. It does not search the folders of the library and the output, unless they are
+/// inputs themselves, because their datasets are the models.
 std::vector<FoundScan> scenes_of(const RecogniseOptions& options, const SearchedLibrary& library) {
   std::vector<fs::path> passed_over = {library.path.parent_path()};
   if (!options.output.empty()) passed_over.emplace_back(options.output);
@@ -139,7 +140,7 @@ void add_recognise(CLI::App& app, int& exit_code) {
   add_options(command, *options);
   command->fallthrough();
   command->callback([options, &exit_code] {
-    settle(*options);
+    complete(*options);
     exit_code = recognise(*options);
   });
 }

@@ -31,9 +31,9 @@ std::string name_of_model(const json& candidate) {
   return candidate.at("model").get<std::string>();
 }
 
-/// How both tables of a scene are printed.
+/// The layout of both tables of a scene.
 struct Table {
-  int width = 0;  ///< of the column of names
+  int width = 0;  ///< Width of the column of names.
   bool has_shares = true;
 };
 
@@ -51,7 +51,7 @@ void print_head(const char* what, int width) {
               "conflict", "votes", "cluster");
 }
 
-/// The thesis' method looks at no surface: matches and conflicts are not known.
+/// Prints a row. The thesis' method compares no surfaces, so it has no matches and conflicts.
 void print_row(std::size_t place, const json& candidate, const Table& table) {
   const auto share = [&](const char* name) {
     char text[32] = "-";
@@ -63,7 +63,7 @@ void print_row(std::size_t place, const json& candidate, const Table& table) {
               share("conflict").c_str(), number(candidate, "votes"), number(candidate, "cluster"));
 }
 
-/// As 4 x 4, and as the thesis' seven numbers.
+/// Prints a pose as a 4 x 4 matrix, and as the seven numbers of the thesis.
 void print_pose(const json& pose) {
   constexpr int kIndent = 13;
   std::printf("%*sscale %.6g; d h q %.6g %.6g %.6g; gamma beta alpha %.3f %.3f %.3f degrees\n",

@@ -7,10 +7,10 @@
 
 namespace semigeo::jobs::cli {
 
-/// Says how much of what was recognised is printed.
+/// Says how much of the results is printed.
 struct RecogniseReport {
   std::size_t top = 5;    ///< Number of models of each ranking.
-  bool has_files = true;  ///< The files stay, so that their paths are of use.
+  bool has_files = true;  ///< The files are kept, so their paths are printed.
 };
 
 /// Prints on stdout for each scene its objects with their poses and the first models of the

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the command line says.
+/// The options of the command.
 struct RunOptions {
   std::vector<fs::path> inputs;  ///< Scans, and folders of them.
   fs::path archive;
@@ -25,8 +25,8 @@ struct RunOptions {
   bool library = false;  ///< A library of all datasets of the archive is made as well.
 };
 
-/// The first time, puts the configuration into the archive; notes whose datasets it holds. What
-/// fails here fails before the hours of work.
+/// Puts the configuration into the archive if it has none yet, and records the scans of its
+/// datasets. Errors come here, before hours of work.
 void prepare_archive(const fs::path& archive, const std::string& effective_config,
                      const std::vector<PlannedJob>& plan) {
   const fs::path config_file = archive / "semigeo.toml";
@@ -90,9 +90,9 @@ void add_options(CLI::App* command, RunOptions& options) {
   add_execution_options(*command, options.execution);
 }
 
-void settle(RunOptions& options) {
-  settle(options.execution);
-  settle(options.surface);
+void complete(RunOptions& options) {
+  complete(options.execution);
+  complete(options.surface);
 }
 
 }  // namespace
@@ -121,7 +121,7 @@ void add_run(CLI::App& app, int& exit_code) {
   add_options(command, *options);
   command->fallthrough();
   command->callback([options, &exit_code] {
-    settle(*options);
+    complete(*options);
     exit_code = find_and_run(*options, config_text(options->surface));
   });
 }

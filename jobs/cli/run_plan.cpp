@@ -32,7 +32,7 @@ int dry_run(const ExecutionOptions& options, const PlanSource& source) {
   return std::ranges::all_of(plan, is_readable) ? kAllDone : kSomeFailed;
 }
 
-/// The runner that the options ask for.
+/// Makes the runner that the options ask for.
 class ChosenRunner {
  public:
   ChosenRunner(const ExecutionOptions& options, const fs::path& home)
@@ -56,7 +56,7 @@ class ChosenRunner {
     return *local_;
   }
 
-  /// Returns what was left to Slurm.
+  /// Returns the stages that were submitted to Slurm.
   std::vector<SubmittedStage> submitted() const {
     return slurm_ ? slurm_->submitted() : std::vector<SubmittedStage>();
   }

@@ -11,21 +11,22 @@
 
 namespace semigeo::jobs::cli {
 
-/// Where a plan comes from, and the folder that has the lock, the journal and the logs of its run.
+/// The function that makes a plan, and the folder for the lock, the journal and the logs of its
+/// run.
 struct PlanSource {
-  std::filesystem::path home;
-  /// Makes the plan. It reads only. If something is to be run, it is called when the folder belongs
-  /// to the run.
+  std::filesystem::path home;  ///< Folder for the lock, the journal and the logs.
+  /// Makes the plan and writes nothing. If jobs will run, it is called after the folder was locked.
   std::function<std::vector<PlannedJob>(DigestCache&)> plan;
-  /// Prepares a folder that belongs to the run and can be written, before jobs run.
+  /// Prepares the folder after it was locked, before jobs run. It may write.
   std::function<void(const std::vector<PlannedJob>&)> prepare = {};
-  bool is_archive = true;  ///< The folder has scans: what was learned of them is kept.
-  bool is_kept = true;     ///< Others know the folder; if not, there is neither lock nor journal.
+  bool is_archive = true;  ///< The folder is an archive; rates of its jobs are learned.
+  bool is_kept = true;     ///< The folder is kept; otherwise it gets neither lock nor journal.
   /// Prints the results instead of the report of a run.
   std::function<void(const RunResult&)> print = {};
 };
 
-/// Makes the plan and runs it, or says what would run. Prints results and returns an exit code.
+/// Makes the plan and runs it, or says which jobs would run. Prints results and returns an exit
+/// code.
 int run_plan(const ExecutionOptions& options, const PlanSource& source);
 
 }  // namespace semigeo::jobs::cli

@@ -8,18 +8,19 @@
 
 namespace semigeo::jobs::cli {
 
-/// Prints on stdout what would run, and why, as JSON or as text. In text `explain` adds a line for
-/// everything that differs; JSON always has it.
+/// Prints on stdout which jobs would run, and why, as JSON or as text. In text `explain` adds a
+/// line for each difference; JSON always has them.
 void print_plan(const std::vector<PlannedJob>& plan, bool json, bool explain);
 
 /// Prints on stdout what a run has done, as one JSON document.
 void print_json(const RunResult& result);
 
-/// Prints on stdout what a run has done, in words: what jobs tell about scans, a line each; then
-/// the failures, what became of a library, and the totals.
+/// Prints on stdout what a run has done as text: a line for each report of a job, then the
+/// failures, the summary of a library, and the totals.
 void print_text(const RunResult& result);
 
-/// Prints on stdout the numbers of Slurm's jobs, for which nobody waits: a line each, or as JSON.
+/// Prints on stdout the ids of the jobs of Slurm for which the program does not wait, a line each
+/// or as JSON.
 void print_submitted(const std::vector<SubmittedStage>& stages, bool json);
 
 }  // namespace semigeo::jobs::cli

@@ -16,7 +16,7 @@ struct StatusOptions {
   bool json = false;
 };
 
-/// What has become of the last run, in one word or two.
+/// Returns the state of the last run in one or two words.
 const char* state_of(const ArchiveStatus& status) {
   if (!status.last_run) return status.owner ? "starting" : "never run";
   if (status.is_running()) return "running";

@@ -10,7 +10,7 @@
 namespace semigeo::jobs::cli {
 namespace {
 
-/// With --schedule octaves there are at most so many levels: then a patch reaches over a thousand
+/// The largest number of levels with --schedule octaves. There a patch reaches over a thousand
 /// edges.
 constexpr int kMostOctaveLevels = 16;
 
@@ -60,7 +60,7 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options) {
   add_table_options(command, surface_parameter_table(), options.parameters, options.tolerance);
 }
 
-void settle(SurfaceOptions& options) {
+void complete(SurfaceOptions& options) {
   SurfaceParameters& parameters = options.parameters;
   set_tolerance(options.tolerance, parameters);
   if (parameters.evolution.schedule == Schedule::kOctaves && parameters.levels > kMostOctaveLevels)

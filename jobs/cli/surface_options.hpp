@@ -7,10 +7,10 @@
 
 namespace semigeo::jobs::cli {
 
-/// What the command line says of the datasets that are to be made.
+/// The options for the datasets that are made.
 struct SurfaceOptions {
   SurfaceParameters parameters;
-  std::string tolerance;  ///< The text of --decimate; `settle` reads it.
+  std::string tolerance;  ///< The text of --decimate; `complete` reads it.
 };
 
 /// Adds the options of surface_parameter_table() to a command. They are bound to `options`, which
@@ -19,7 +19,7 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options);
 
 /// Completes the parameters when the command line is parsed. Throws CLI::ValidationError if some of
 /// them do not go together.
-void settle(SurfaceOptions& options);
+void complete(SurfaceOptions& options);
 
 /// Returns the parameters as text of a configuration file, which --config reads.
 std::string config_text(const SurfaceOptions& options);

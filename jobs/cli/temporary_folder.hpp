@@ -4,10 +4,10 @@
 
 namespace semigeo::jobs::cli {
 
-/// A folder for what nobody wants to keep; removed with everything in it.
+/// A folder for files that are not kept. The destructor removes it with its content.
 class TemporaryFolder {
  public:
-  /// Throws io::Error if there can be none.
+  /// Makes the folder. Throws io::Error if it cannot be made.
   TemporaryFolder();
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;

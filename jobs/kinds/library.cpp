@@ -19,7 +19,7 @@ namespace semigeo::jobs {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Raised whenever the same runs and parameters give other bytes.
+/// It is raised whenever the same runs and parameters give other bytes.
 static constexpr const char* kVersion = "library 1";
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LibraryJobResult, models, postings, digest)
@@ -102,7 +102,7 @@ class LibraryKind final : public TypedJobKind<LibraryJobData, LibraryJobResult> 
                                    {"missing", missing}}}}};
   }
 
-  /// Partitions, and runs of other models, serve nobody any more.
+  /// Removes partitions and runs of other models, which nothing needs any more.
   void clean_up(const Job& job) const override {
     std::error_code ignored;
     fs::remove_all(job.input / "partitions", ignored);

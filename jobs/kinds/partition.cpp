@@ -17,7 +17,7 @@ namespace semigeo::jobs {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Raised whenever the same runs give other bytes.
+/// It is raised whenever the same runs give other bytes.
 static constexpr const char* kVersion = "partition 1";
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PartitionJobResult, postings)

@@ -15,7 +15,7 @@ namespace semigeo::jobs {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Raised whenever the same scene, library and parameters give other bytes.
+/// It is raised whenever the same scene, library and parameters give other bytes.
 static constexpr const char* kVersion = "recognise 2";
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RecogniseJobResult, features, triplets, objects)
@@ -61,7 +61,7 @@ class RecogniseKind final : public TypedJobKind<RecogniseJobData, RecogniseJobRe
             {.kind = "hash library", .path = data(planned.job).library}};
   }
 
-  /// The scene is smoothed like a model; then surfaces of candidates are laid onto it.
+  /// Estimates the smoothing of the scene, and the comparison with the surfaces of candidates.
   Estimate estimate(const PlannedJob& planned, const EstimateContext& context) const override {
     const RecogniseJobData& recognise = data(planned.job);
     const fs::path& scene = planned.job.input;

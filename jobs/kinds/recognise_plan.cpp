@@ -25,7 +25,7 @@ fs::path recognised_path(const fs::path& folder, const std::string& name) {
   return folder_of(folder) / (name + ".json");
 }
 
-/// Whether the folder has what was recognised in a scene of these bytes under this name.
+/// Returns whether the folder has a recognised file of this name, made of a scene with these bytes.
 bool is_of(const fs::path& folder, const std::string& name, const std::string& xxh3) {
   try {
     return read_recognised(recognised_path(folder, name)).at("scene").at("xxh3") == xxh3;

@@ -18,10 +18,10 @@ namespace semigeo::jobs {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Raised whenever the same scan and parameters give other bytes.
+/// It is raised whenever the same scan and parameters give other bytes.
 static constexpr const char* kVersion = "surface 10";
 
-/// Names every number and word of a result, for writing and for reading alike.
+/// Names every number and word of a result, for writing and for reading.
 template <typename Visit>
 static void each_field(SurfaceJobResult& r, const Visit& visit) {
   visit("format", r.format);
@@ -122,7 +122,7 @@ std::string in_words(const PreparationResult& preparation) {
   return text.empty() ? "nothing to do" : text;
 }
 
-/// Returns what became of a surface on its way through the levels, if it is worth a word.
+/// Returns in words what was done to the surface from level to level, or an empty text.
 std::string evolution_in_words(const SurfaceJobResult& result) {
   std::string text;
   const auto add = [&text](std::int64_t count, const char* one, const char* more) {
@@ -137,7 +137,7 @@ std::string evolution_in_words(const SurfaceJobResult& result) {
   return text;
 }
 
-/// Returns whether the sidecar could be made; if not, the dataset must be made, too.
+/// Returns whether the sidecar could be made. If not, the dataset must be made, too.
 bool remake_sidecar(const Job& job) {
   std::string text;
   try {

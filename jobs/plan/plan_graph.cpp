@@ -29,7 +29,7 @@ std::string output_id(const Job& job) {
   return job.kind->words().output + ' ' + job.output.string();
 }
 
-/// A file that is an input of the whole plan.
+/// Returns the node of a file that is an input of the whole plan.
 GraphNode node_of(const ExternalFile& file) {
   const std::string name = file.path.string();
   return {.id = file.kind + ' ' + name,
@@ -38,7 +38,7 @@ GraphNode node_of(const ExternalFile& file) {
           .state = file.is_readable ? "readable" : "unreadable"};
 }
 
-/// Between quotes; names may hold anything.
+/// Returns the text in quotes, with special characters escaped.
 std::string quoted(const std::string& text) {
   std::string result = "\"";
   for (const char c : io::as_utf8(text)) {

@@ -4,8 +4,9 @@
 
 namespace semigeo::jobs {
 
-/// While one lives, SIGINT and SIGTERM end nothing: they are counted, and wake whoever waits for
-/// children. Before and after, signals do what they did. One at a time.
+/// Counts SIGINT and SIGTERM as long as it exists. They do not end the process, but wake the thread
+/// that waits for children. The destructor restores what the signals did before. There may be only
+/// one Drain at a time.
 class Drain {
  public:
   explicit Drain(engine::ChildProcesses& children);
@@ -13,7 +14,8 @@ class Drain {
   Drain(const Drain&) = delete;
   Drain& operator=(const Drain&) = delete;
 
-  /// Signals so far. One: start nothing new. Two: end what is running.
+  /// Returns the number of signals so far. After one, nothing new should start; after two, running
+  /// jobs should be ended.
   int requests() const;
 };
 

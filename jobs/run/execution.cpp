@@ -169,7 +169,7 @@ class Execution {
     if (listener_ != nullptr) listener_->job_ended(plan_[job], outcomes_[job]);
   }
 
-  std::vector<PlannedJob> plan_;  ///< With the inputs that are there, once a job has begun.
+  std::vector<PlannedJob> plan_;  ///< Jobs that have begun have their actual inputs.
   Runner& runner_;
   Progress& progress_;
   JobListener* listener_;
@@ -178,7 +178,7 @@ class Execution {
   Scheduler scheduler_;
   OutputKeys keys_;
   std::vector<JobOutcome> outcomes_;
-  std::vector<bool> begun_;  ///< Progress and listener know it.
+  std::vector<bool> begun_;  ///< Progress and listener were told of it.
   bool cancelled_waiting_ = false;
 };
 

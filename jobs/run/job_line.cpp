@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Reads a line; whatever JSON has against it is the same failure.
+/// Reads a line, and turns every error of JSON into the same error.
 template <typename Read>
 auto reading(const char* what, const std::string& line, const Read& read) {
   try {

@@ -62,7 +62,7 @@ std::string cause_of(const ChildProcesses::Ended& ended, double timeout) {
   return "ended with exit code " + std::to_string(ended.exit_code) + " instead of an answer";
 }
 
-/// Returns the sentence about a job whose process was lost for good.
+/// Returns the sentence about a job whose process was lost and is not tried again.
 std::string sentence_about(const Job& job, const std::string& cause, const fs::path& log) {
   const JobWords& words = job.kind->words();
   const std::string printed = last_lines(log);

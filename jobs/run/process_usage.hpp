@@ -4,12 +4,13 @@
 
 namespace semigeo::jobs {
 
-/// What this process has used so far.
+/// The time and memory that a process has used so far.
 struct ProcessUsage {
   double cpu_seconds = 0;
-  double peak_bytes = 0;  ///< the most memory it ever had
+  double peak_bytes = 0;  ///< Largest use of memory so far.
 };
 
+/// Returns what this process has used.
 inline ProcessUsage process_usage() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

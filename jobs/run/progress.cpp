@@ -15,14 +15,15 @@ constexpr std::chrono::seconds kPlainInterval{60};
 constexpr std::size_t kUsualWidth = 80;
 constexpr std::size_t kShortestName = 8;
 
-/// Columns that a line may fill; the last is left free, as some terminals wrap once it is written.
+/// Returns the number of columns that a line may fill. The last column is left free, because some
+/// terminals wrap when it is written.
 std::size_t terminal_width() {
   winsize size{};
   const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
   return (known ? size.ws_col : kUsualWidth) - 1;
 }
 
-/// Shows both ends of `text`.
+/// Returns both ends of `text` with dots between them, or all of it if it fits.
 std::string shortened(const std::string& text, std::size_t width) {
   constexpr std::size_t kDots = 3;
   if (text.size() <= width) return text;

@@ -10,12 +10,12 @@
 
 namespace semigeo::jobs {
 
-/// Tells on stderr how a run goes: on a terminal one line that is overwritten, else a plain line a
-/// minute. Rates are in vertices times levels per second. NO_COLOR is honoured (nothing is
-/// coloured).
+/// Prints on stderr how far a run is. On a terminal it is one line that is overwritten, otherwise a
+/// new line every minute. Rates are in vertices times levels per second. Nothing is coloured.
 class Progress : public engine::Observer {
  public:
-  /// `jobs` are to be done, which read `bytes` bytes of scans; time left is judged by bytes.
+  /// Starts a run of `jobs` jobs that read `bytes` bytes of scans. The time left is estimated from
+  /// the bytes.
   Progress(std::int64_t jobs, std::uintmax_t bytes);
   ~Progress() override;
 
@@ -23,7 +23,7 @@ class Progress : public engine::Observer {
 
   void job_started(const std::string& name);
   void job_ended(bool ok, std::uintmax_t bytes);
-  /// Prints a line of its own, not disturbing the live line.
+  /// Prints a separate line and leaves the live line whole.
   void say(const std::string& line);
 
   std::int64_t vertex_levels() const { return vertex_levels_; }
@@ -38,22 +38,22 @@ class Progress : public engine::Observer {
   const bool terminal_;
   const Clock::time_point start_ = Clock::now();
   std::atomic<std::int64_t> vertex_levels_ = 0;
-  std::mutex mutex_;  ///< guards what follows
+  std::mutex mutex_;  ///< Guards the members below.
   Clock::time_point shown_ = start_;
   std::string current_;
   std::int64_t done_ = 0;
   std::int64_t failed_ = 0;
   std::uintmax_t bytes_done_ = 0;
-  bool live_ = false;  ///< a live line stands on the terminal
+  bool live_ = false;  ///< The terminal shows a live line.
 };
 
-/// "counts, name" in at most `width` bytes: the name is shortened in its middle, then left out,
-/// then the counts are cut.
+/// Returns "counts, name" in at most `width` bytes. If it is too long, the name is shortened in its
+/// middle, then left out; then the counts are cut.
 std::string progress_line(const std::string& counts, const std::string& name, std::size_t width);
 
-/// "1.2 M", "340 k", "17".
+/// Returns a number as "1.2 M", "340 k" or "17".
 std::string short_number(double value);
-/// "45 s", "3 min 20 s", "2 h 05 min".
+/// Returns a time as "45 s", "3 min 20 s" or "2 h 05 min".
 std::string short_duration(double seconds);
 
 }  // namespace semigeo::jobs

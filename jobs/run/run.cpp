@@ -114,8 +114,8 @@ class Run {
     }
   }
 
-  /// Removes what workers of a run that was killed have left, who may have lived a moment into this
-  /// one, and what outputs that are made need no more.
+  /// Removes partial files of the workers of a killed run, which may have lived until after the
+  /// start of this one, and files that finished outputs no longer need.
   void clean_up() {
     if (!lock_) return;
     std::set<fs::path> folders;
@@ -145,7 +145,7 @@ class Run {
     if (!journal_->problem().empty()) hooks_.warn(journal_->problem());
   }
 
-  /// The next run need not read what this one has made, and knows better what jobs need.
+  /// Saves the digests of the outputs and the learned rates for the next run.
   void learn() {
     if (!journal_ || !settings_.is_archive) return;
     bool learned = false;
@@ -157,7 +157,7 @@ class Run {
     if (learned) try_to([&] { learn_estimates(settings_.home).write(settings_.home); });
   }
 
-  /// What only serves the next runs must not fail this one.
+  /// Only warns if the action fails, because it only serves the next runs.
   void try_to(const std::function<void()>& action) {
     try {
       action();

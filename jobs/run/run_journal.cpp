@@ -11,7 +11,7 @@
 namespace semigeo::jobs {
 namespace {
 
-/// Sorts by time, and is no other run's.
+/// Returns a name for the run that sorts by time and that no other run has.
 std::string run_name(const ProcessIdentity& process) {
   return utc_time() + " " + process.host + " " + std::to_string(process.pid);
 }

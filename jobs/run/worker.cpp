@@ -68,7 +68,7 @@ class Lines {
   std::string buffer_;
 };
 
-/// Tells how much work is done, now and then.
+/// Reports from time to time how much work is done.
 class Reporter : public engine::Observer {
  public:
   explicit Reporter(int answers) : answers_(answers) {}
@@ -92,9 +92,9 @@ class Reporter : public engine::Observer {
   Clock::time_point reported_ = Clock::now();
 };
 
-/// The file that standard output and error go to while a job runs. If nobody printed anything, the
-/// next job's log is the same file under another name: making and removing one for each would cost
-/// more than many a job.
+/// The file for standard output and standard error while a job runs. If nothing was printed, the
+/// file is renamed for the next job: making and removing a file for each would take longer than
+/// many jobs.
 class JobLog {
  public:
   JobLog() = default;
@@ -105,7 +105,8 @@ class JobLog {
   JobLog(const JobLog&) = delete;
   JobLog& operator=(const JobLog&) = delete;
 
-  /// Nowhere else if the path is empty, or cannot be opened: what a job prints is for people.
+  /// Redirects the output to the file. Does nothing if the path is empty or cannot be opened,
+  /// because what a job prints is only for people.
   void begin(const fs::path& path) {
     if (path.empty() || (!take_over(path) && !open_anew(path))) return;
     std::fflush(nullptr);
@@ -143,7 +144,7 @@ class JobLog {
   }
 
   fs::path path_;
-  engine::Descriptor file_;  ///< none, or empty between jobs
+  engine::Descriptor file_;  ///< Not open, or empty between jobs.
   std::vector<engine::Descriptor> before_;
 };
 
@@ -154,7 +155,7 @@ void limit_address_space(std::uint64_t bytes) {
   setrlimit(RLIMIT_AS, &limit);
 }
 
-/// What SEMIGEO_TEST_FAULTS has for this job.
+/// Returns the fault that SEMIGEO_TEST_FAULTS names for this job, or an empty text.
 std::string fault_of(const Job& job) {
   const std::string name = shown_name(job);
   const char* faults = std::getenv("SEMIGEO_TEST_FAULTS");
@@ -187,12 +188,12 @@ void simulate_fault(const JobRequest& request) {
     for (std::vector<std::vector<char>> all;;) all.emplace_back(std::size_t{1} << 26, '1');
 }
 
-/// From now on the peak is that of what follows.
+/// Restarts the measurement of the peak of memory.
 void restart_peak() {
   std::ofstream("/proc/self/clear_refs") << '5';
 }
 
-/// The most memory that was resident at once, in bytes; 0 if Linux does not say.
+/// Returns the peak of resident memory in bytes, or 0 if Linux does not tell it.
 double peak_bytes() {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;) {

@@ -17,9 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Slurm's own programs give up on a controller that does not answer before this.
+/// The limit is longer than the time after which Slurm's programs themselves give up.
 constexpr int kMostSeconds = 120;
-/// More than the queue of a million tasks.
+/// The limit is more than the queue of a million tasks.
 constexpr std::size_t kMostBytes = std::size_t{1} << 28;
 constexpr std::size_t kMostShownBytes = 1000;
 constexpr const char* kRemedy =
@@ -37,7 +37,7 @@ std::string in_path(const std::string& program) {
                   "run where Slurm's programs are, or with --executor local");
 }
 
-/// What a program of Slurm printed, and how it ended.
+/// It holds what a program of Slurm printed, and how it ended.
 using Answer = engine::CommandResult;
 
 Answer ask(const std::vector<std::string>& arguments) {
@@ -48,7 +48,7 @@ Answer ask(const std::vector<std::string>& arguments) {
   return answer;
 }
 
-/// Without the line ends, so that it fits into a sentence.
+/// Replaces the line ends, so that the text fits into a sentence.
 std::string in_one_line(std::string text) {
   std::ranges::replace_if(
       text, [](unsigned char c) { return std::isspace(c) != 0; }, ' ');
@@ -81,7 +81,7 @@ bool is_number(const std::string& text) {
          std::ranges::all_of(text, [](unsigned char c) { return isdigit(c) != 0; });
 }
 
-/// What Slurm says of jobs that ended long ago.
+/// Returns whether Slurm no longer knows the job, because it ended long ago.
 bool is_forgotten(const Answer& answer) {
   return answer.text.find("Invalid job id") != std::string::npos;
 }

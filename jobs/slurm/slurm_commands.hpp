@@ -12,25 +12,25 @@ namespace semigeo::jobs {
 struct SlurmArray {
   std::string name;
   std::filesystem::path script;
-  std::filesystem::path
-      folder;  ///< Folder where tasks run. It takes their output, task-<number>.log.
+  /// Folder where tasks run. It takes their output, task-<number>.log.
+  std::filesystem::path folder;
   int tasks = 1;
   int cpus = 1;  ///< Number of cores of a task.
-  std::uint64_t memory_bytes =
-      0;               ///< Memory of a task, rounded up to MiB; 0: what the cluster gives.
-  double seconds = 0;  ///< Time of a task, rounded up to minutes; 0: what the cluster gives.
-  std::vector<std::string> after = {};    ///< Jobs that must have ended well before.
-  std::vector<std::string> options = {};  ///< Options of sbatch. They win over what is said above.
+  /// Memory of a task, rounded up to MiB; 0: the default of the cluster.
+  std::uint64_t memory_bytes = 0;
+  double seconds = 0;  ///< Time of a task, rounded up to minutes; 0: the default of the cluster.
+  std::vector<std::string> after = {};    ///< Jobs that must have succeeded before it starts.
+  std::vector<std::string> options = {};  ///< Options of sbatch. They override the fields above.
 };
 
-/// Returns what sbatch is given.
+/// Returns the arguments of sbatch.
 std::vector<std::string> sbatch_arguments(const SlurmArray& array);
 
 /// A task that has not ended.
 struct QueuedTask {
   enum class State { kPending, kRunning };
   State state = State::kPending;
-  std::string reason = {};  ///< Why it waits, in Slurm's word: "Resources", "PartitionTimeLimit".
+  std::string reason = {};  ///< Why it waits, as Slurm says: "Resources", "PartitionTimeLimit".
   friend bool operator==(const QueuedTask&, const QueuedTask&) = default;
 };
 
@@ -44,7 +44,7 @@ class SlurmCommands {
 
   /// Submits a job and returns its id, as the other functions take it.
   std::string submit(const SlurmArray& array) const;
-  /// Returns those of the job's tasks that have not ended, by number.
+  /// Returns the tasks of the job that have not ended, by number.
   std::map<int, QueuedTask> queue(const std::string& job) const;
   /// Cancels the tasks that wait; running tasks go on.
   void cancel_pending(const std::string& job) const;
@@ -57,7 +57,8 @@ class SlurmCommands {
   std::string scancel_;
 };
 
-/// Reads what `squeue --noheader --array --format "%K %T %r"` printed; other lines are passed over.
+/// Reads the output of `squeue --noheader --array --format "%K %T %r"`. Other lines are passed
+/// over.
 std::map<int, QueuedTask> parse_queue(const std::string& text);
 
 }  // namespace semigeo::jobs

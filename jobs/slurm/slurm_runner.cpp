@@ -18,10 +18,11 @@ namespace fs = std::filesystem;
 constexpr double kShortestPause = 2;
 constexpr double kLongestPause = 15;
 constexpr double kPauseOfElapsed = 0.1;
-/// For so many seconds squeue may fail: controllers are restarted, networks go away and come back.
+/// The seconds for which squeue may fail, because controllers are restarted and networks break down
+/// for a while.
 constexpr double kPatience = 300;
 
-/// A network disk may know the names in a folder as they were a while ago, until it is opened.
+/// Opens a folder. A network disk may show the names as they were a while ago until that is done.
 void refresh_folder(const fs::path& folder) {
   std::error_code ignored;
   const fs::directory_iterator opened(folder, ignored);
@@ -106,7 +107,8 @@ RunnerEvent SlurmRunner::wait() {
   return event;
 }
 
-/// Asks the queue first: what has left it has told its results.
+/// Reads what has happened to the tasks of a stage. It asks the queue first, because tasks that
+/// have left the queue have written their results.
 void SlurmRunner::watch(WatchedStage& watched) {
   if (std::ranges::all_of(watched.tasks, &WatchedTask::ended)) return;
   const auto queue = queue_of(watched.job);
@@ -137,7 +139,7 @@ void SlurmRunner::watch(WatchedStage& watched) {
   }
 }
 
-/// Says why tasks wait, if that is not for others to end: somebody may have to do something.
+/// Prints why tasks wait, unless the reason is a usual one: the user may have to do something.
 void SlurmRunner::tell_reason(const QueuedTask& task) {
   static constexpr std::array kUsual = {"",           "None",      "Resources",        "Priority",
                                         "Dependency", "BeginTime", "JobArrayTaskLimit"};
@@ -149,7 +151,7 @@ void SlurmRunner::tell_reason(const QueuedTask& task) {
        " as the reason; if that does not pass, interrupt, and see --slurm-option");
 }
 
-/// Returns nothing if squeue fails; it is asked again, for a while.
+/// Returns the queue, or nothing if squeue fails. For a while it is asked again.
 std::optional<std::map<int, QueuedTask>> SlurmRunner::queue_of(const std::string& job) {
   try {
     auto queue = commands_.queue(job);
@@ -179,7 +181,7 @@ void SlurmRunner::read_results_of(WatchedTask& task, const fs::path& file) {
   }
 }
 
-/// Looks at the output for the inputs that the jobs before have left.
+/// Returns whether the output is up to date with the inputs that the jobs before have made.
 bool SlurmRunner::has_output(std::size_t job) {
   Job now = plan_[job].job;
   try {
@@ -189,7 +191,7 @@ bool SlurmRunner::has_output(std::size_t job) {
   }
 }
 
-/// Judges the jobs of a task from which nothing more will come. The outputs have the last word.
+/// Judges the jobs of a task that has ended. The outputs count, not what the task has told.
 void SlurmRunner::end(const SlurmStage& stage, WatchedTask& task, const fs::path& log) {
   task.ended = true;
   // Slurm cancels what waits for a task that was killed.
@@ -258,7 +260,7 @@ void SlurmRunner::cancel(void (SlurmCommands::*command)(const std::string&) cons
   }
 }
 
-/// Its logs tell nothing any more.
+/// Removes the folder of the run, whose logs nobody needs any more.
 void SlurmRunner::remove_folder() const {
   std::error_code ignored;
   fs::remove_all(folder_, ignored);

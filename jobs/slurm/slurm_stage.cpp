@@ -36,33 +36,33 @@ void make_folder(const fs::path& folder) {
                     "check the archive, its permissions and the free space");
 }
 
-/// As one word of a shell.
+/// Returns the text as one word of a shell.
 std::string quoted(const std::string& text) {
   std::string word = "'";
   for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return word + '\'';
 }
 
-/// Removes what is damaged behind a good header, as tasks judge by headers; and outputs of other
-/// inputs, as a task that never begins must not leave them to the jobs after it.
+/// Removes outputs that are damaged behind a good header, because tasks judge by headers. Removes
+/// outputs of other inputs too, because the jobs after a task that never begins must not use them.
 void remove_damaged(const PlannedJob& planned) {
   const JobKind& kind = *planned.job.kind;
   kind.remove_stale_output(planned.job);
   if (is_complete(planned.job)) kind.discard_output(planned.job);
 }
 
-/// Tasks run in another folder.
+/// Makes the paths absolute, because tasks run in another folder.
 Job with_absolute_paths(Job job) {
   job.input = fs::absolute(job.input);
   job.output = fs::absolute(job.output);
   return job;
 }
 
-/// What each task of a stage gets: enough for the one that needs most.
+/// What each task of a stage gets. It is enough for the task that needs most.
 struct Needs {
-  double bytes = 0;        ///< of the jobs that run side by side
-  double seconds = 0;      ///< of all jobs
-  double longest_job = 0;  ///< seconds
+  double bytes = 0;        ///< Memory of the jobs that run at the same time.
+  double seconds = 0;      ///< Time of all jobs.
+  double longest_job = 0;  ///< Time of the longest job, in seconds.
 };
 
 Needs needs_of(const SlurmStage& stage, const std::vector<Estimate>& estimates, int threads) {
@@ -103,7 +103,7 @@ TaskSettings size_up(SlurmArray& array, const Needs& needs, const ExecutorOption
   return settings;
 }
 
-/// What all stages of a run are made from.
+/// The inputs that all stages of a run share.
 struct StageInputs {
   const std::vector<PlannedJob>& plan;
   const ExecutorOptions& options;

@@ -15,9 +15,9 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// Who waits for the results looks about as often.
+/// The run that waits for the results reads them about as often.
 constexpr std::chrono::seconds kWriteInterval{5};
-/// "No time left" where 0 means "any".
+/// It stands for "no time left", because 0 means "any".
 constexpr double kNoTime = 1e-9;
 
 /// Keeps the file of results up to date.
@@ -30,7 +30,7 @@ class Results : public JobListener {
     set(planned.job, outcome);
     if (Clock::now() - written_ >= kWriteInterval) write();
   }
-  /// What a first copy of the task has told of what it made stays.
+  /// Records an outcome. If an earlier copy of the task has made the output, its result is kept.
   void set(const Job& job, const JobOutcome& outcome) {
     TaskResult& known = results_[job_id(job)];
     if (outcome.state == JobState::kUpToDate && known.outcome.state == JobState::kDone) return;

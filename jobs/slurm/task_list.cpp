@@ -19,7 +19,8 @@ using nlohmann::json;
 constexpr double kTaskSeconds = 300;
 constexpr std::size_t kMostTasks = 10'000;
 
-/// Jobs in their order, a new task whenever the next one would make it longer than `seconds`.
+/// Fills tasks with jobs in their order. A new task begins when the next job would make the task
+/// longer than `seconds`.
 std::vector<std::vector<std::size_t>> filled(std::span<const std::size_t> order,
                                              std::span<const double> expected, double seconds) {
   std::vector<std::vector<std::size_t>> tasks;
@@ -35,12 +36,12 @@ std::vector<std::vector<std::size_t>> filled(std::span<const std::size_t> order,
   return tasks;
 }
 
-/// With this a task finds its lines among those of others without understanding them.
+/// Returns the text by which a task finds its lines among those of others without parsing them.
 std::string head_of(int number) {
   return R"({"task":)" + std::to_string(number) + ',';
 }
 
-/// The same object with more at its front.
+/// Returns the text of an object with more fields at its front.
 std::string with_front(const std::string& front, const std::string& object) {
   return front + object.substr(1);
 }

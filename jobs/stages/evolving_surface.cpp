@@ -17,23 +17,24 @@ namespace {
 
 using engine::IndexRange;
 
-/// Vertices or faces per task: about a millisecond of work for a patch.
+/// Vertices or faces per task, which is about a millisecond of work for patches.
 constexpr std::int64_t kVertexBlock = 512;
 constexpr std::int64_t kFaceBlock = 8192;
-/// A part that shrank more than this in one pass is no surface at this step any more; restoring it
-/// in full would only magnify rounding.
+/// The largest factor of rescaling. A part that shrank more in one pass is too small for the step;
+/// restoring it in full would only magnify rounding.
 constexpr double kMaxRestoration = 8;
-/// Further passes for the normals of vertices with truncated patches: errors along a rim feed on
-/// each other, and after two have settled.
+/// The number of further passes for the normals of vertices with truncated patches. Errors along a
+/// rim influence each other; two passes suffice.
 constexpr int kRimPasses = 2;
 
-/// Any number of threads may say so; a look first keeps the cache line shared.
+/// Sets the mark. Any number of threads may call it; reading first keeps the cache line shared.
 void note_patch(std::uint8_t& has_patch) {
   std::atomic_ref flag(has_patch);
   if (flag.load(std::memory_order_relaxed) == 0) flag.store(1, std::memory_order_relaxed);
 }
 
-/// Rows of a level: vertices by the vertex of level 0 that they come from, then the others.
+/// Returns the order of the rows of a level: vertices by the vertex of level 0 that they come from,
+/// then inserted vertices.
 std::vector<std::int32_t> order_by_source(const std::vector<std::int32_t>& source) {
   std::int32_t rows = 0;
   for (const std::int32_t s : source) rows = std::max(rows, s + 1);
@@ -84,7 +85,7 @@ EvolvingSurface::EvolvingSurface(kernels::Surface surface, const EvolutionOption
   if (options_.curved) sharpen_normals();
 }
 
-/// Everything that has the size of the mesh.
+/// Resizes everything that has the size of the mesh.
 void EvolvingSurface::adopt_mesh() {
   const std::size_t faces = mesh_.connectivity.triangles.size();
   next_points_.resize(mesh_.points.size());
@@ -105,7 +106,7 @@ kernels::PatchLayout EvolvingSurface::layout() const {
           .principal = options_.principal};
 }
 
-/// Half-lines of steps beyond four edges may cross as many more faces as they are longer.
+/// Sets the step. Half-lines of steps longer than four edges may cross more faces in proportion.
 void EvolvingSurface::set_step(double step) {
   step_ = step;
   const double edges = mean_edge_length_ > 0 ? step / mean_edge_length_ : 1;
@@ -142,9 +143,9 @@ void EvolvingSurface::prepare_faces() {
   });
 }
 
-/// Angle-weighted normals are first-order on uneven meshes; those of the fitted surface are far
-/// better, and later levels get theirs for nothing. Only level 0 needs a pass of its own; along
-/// rims, where a patch leans on fewer normals, two more.
+/// Replaces angle-weighted normals, which are only first-order on uneven meshes, by those of the
+/// fitted surface. Later levels get them from smoothing. Only level 0 needs a pass of its own, and
+/// two more along rims, where patches depend on fewer normals.
 void EvolvingSurface::sharpen_normals() {
   const std::int64_t n = vertex_count();
   std::vector<std::uint8_t> truncated(n);
@@ -249,9 +250,9 @@ void EvolvingSurface::move() {
   prepare_faces();
 }
 
-/// 5.1, scale factor. Differs: the thesis compares mean edge lengths, which noise makes longer.
-/// Volume and radius of gyration do not know noise; thin walls keep their volume, blades that
-/// shrink to their axis their radius, and so the smaller factor is right for either.
+/// Returns the scale factor of 5.1. Differs: the thesis compares mean edge lengths, which noise
+/// makes longer. Noise hardly changes volume and radius of gyration. Thin walls keep their volume,
+/// and blades that shrink to their axis keep their radius, so the smaller factor is right for both.
 double EvolvingSurface::restoring_factor(const PartMeasure& was, const PartMeasure& is) const {
   const auto ratio = [](double before, double after) {
     if (!(before > 0 && after > 0)) return 1.0;
@@ -264,8 +265,8 @@ double EvolvingSurface::restoring_factor(const PartMeasure& was, const PartMeasu
   return std::min(factor, ratio(std::cbrt(was.volume()), std::cbrt(is.volume())));
 }
 
-/// Rescales each part about its centroid to what it was (thesis 5.1), if that is wanted. result:
-/// the parts after it.
+/// Rescales each part about its centroid to its size before (thesis 5.1), if the options say so.
+/// Returns the measures of the parts afterwards.
 std::vector<PartMeasure> EvolvingSurface::restore_size() {
   struct Restoration {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -288,8 +289,8 @@ std::vector<PartMeasure> EvolvingSurface::restore_size() {
   return parts;
 }
 
-/// Rids the mesh, already moved, of odd triangles and of parts on which no patch was valid.
-/// result: the parts after it.
+/// Removes odd triangles, and parts on which no patch was valid, from the moved mesh. Returns the
+/// measures of the parts afterwards.
 std::vector<PartMeasure> EvolvingSurface::remesh(std::vector<PartMeasure> parts) {
   const engine::Stopwatch stopwatch(context_.observer, "remeshing");
   std::vector<std::uint8_t> dropped(parts.size());

@@ -51,20 +51,20 @@ struct LevelFields {
 
 /// How the sampling step grows from level to level.
 enum class Schedule {
-  kUniform,  ///< Not at all, as in the thesis.
-  kOctaves   ///< With the scale reached: two levels double it. Parts are never rescaled.
+  kUniform,  ///< It does not grow, as in the thesis.
+  kOctaves   ///< It grows with the scale: two levels double it. Parts are never rescaled.
 };
 
-/// What each part gets back after a smoothing (5.1).
+/// The measure of each part that is restored after a smoothing (5.1).
 enum class Rescale {
-  kSize,   ///< Its radius of gyration or, if that takes less, the volume that it encloses.
-  kEdges,  ///< Its mean edge length, as in the thesis.
-  kNone    ///< Nothing.
+  kSize,   ///< The radius of gyration or the enclosed volume, whichever needs the smaller factor.
+  kEdges,  ///< The mean edge length, as in the thesis.
+  kNone    ///< No measure is restored.
 };
 
 /// How a surface is evolved.
 struct EvolutionOptions {
-  bool curved = true;  ///< sample quadratic faces; else flat ones, as the thesis does
+  bool curved = true;  ///< Patches sample quadratic faces; otherwise flat ones, as in the thesis.
   kernels::Coordinates coordinates = kernels::Coordinates::kSemigeodesic;
   Schedule schedule = Schedule::kUniform;
   Rescale rescale = Rescale::kSize;  ///< Used under `kUniform` only.
@@ -80,11 +80,10 @@ struct Origins {
   std::vector<std::uint8_t> face_filled;    ///< (F)
 };
 
-/// Evolves a surface level by level on all workers: kernels for one vertex go in, ranges of
-/// vertices come out. The vertices and faces of each part must be one range, as
-/// `kernels::reordered` by `kernels::locality_order` leaves them. Inside, lengths are multiples of
-/// a power of two near the mean edge length, so that no square of a length leaves single precision,
-/// and the scan's own coordinates come back exactly.
+/// Evolves a surface level by level on all workers. The vertices and faces of each part must be one
+/// range, as `kernels::reordered` by `kernels::locality_order` leaves them. The internal unit of
+/// length is a power of two near the mean edge length, so that squares of lengths stay in the range
+/// of single precision, and the coordinates of the scan are restored exactly.
 class EvolvingSurface {
  public:
   EvolvingSurface(kernels::Surface surface, const EvolutionOptions& options,
@@ -97,8 +96,7 @@ class EvolvingSurface {
   /// Makes the surface, smoothed by the patches of `evaluate`, the next level. Call it after
   /// `evaluate`. If the options say so, each part is rescaled about its centroid, and odd triangles
   /// and parts on which no patch was valid are removed, but not the largest part. A surface that
-  /// collapses altogether leaves a triangle or a tetrahedron in its place. Source:
-  /// thesis 5.1, 5.4, 5.5.
+  /// collapses completely becomes a triangle or a tetrahedron. Source: thesis 5.1, 5.4, 5.5.
   void move();
 
   /// Calls `evaluate`, then `move` if `move` is set, and returns the fields.
@@ -113,7 +111,7 @@ class EvolvingSurface {
   /// Returns the (N) normals of the smoothed surface, unit or zero. Call it between `evaluate` and
   /// `move`.
   const std::vector<Eigen::Vector3f>& smoothed_normals() const { return next_normals_; }
-  /// Returns whether the surface has collapsed. What is left then only marks its place.
+  /// Returns whether the surface has collapsed. Then the mesh only marks its place.
   bool vanished() const { return vanished_; }
 
  private:
@@ -133,23 +131,23 @@ class EvolvingSurface {
 
   engine::RunContext context_;
   EvolutionOptions options_;
-  kernels::LevelMesh mesh_;  ///< internal units
+  kernels::LevelMesh mesh_;  ///< In internal units.
   bool vanished_ = false;
-  std::int64_t target_faces_ = 0;             ///< what refining keeps up
-  std::vector<PartMeasure> part_reference_;   ///< what rescaling gives back, internal units
-  std::vector<std::uint8_t> part_has_patch_;  ///< at the current level
-  double unit_ = 1;                           ///< scan units per internal unit
-  double mean_edge_length_ = 0;               ///< internal units
-  double first_edge_length_ = 0;              ///< of level 0
-  double step_ = 0;                           ///< sample distance of this level, internal units
-  double first_step_ = 0;                     ///< of level 0
+  std::int64_t target_faces_ = 0;             ///< Number of faces that refining maintains.
+  std::vector<PartMeasure> part_reference_;   ///< Rescaling restores it; in internal units.
+  std::vector<std::uint8_t> part_has_patch_;  ///< 1 = some patch is valid at the current level.
+  double unit_ = 1;                           ///< Scan units per internal unit.
+  double mean_edge_length_ = 0;               ///< In internal units.
+  double first_edge_length_ = 0;              ///< Mean edge length of level 0.
+  double step_ = 0;                           ///< Sample distance of this level, in internal units.
+  double first_step_ = 0;                     ///< Sample distance of level 0.
   int max_crossings_ = kernels::kMaxCrossings;
-  double variance_ = 0;  ///< of the smoothing so far, internal units^2
+  double variance_ = 0;  ///< Variance of the smoothing so far, in internal units^2.
 
-  kernels::RemeshCounts remeshed_;  ///< on the way to the current level
-  double shortest_side_ = 0;        ///< internal units
+  kernels::RemeshCounts remeshed_;  ///< What was done to the mesh of the level before.
+  double shortest_side_ = 0;        ///< In internal units.
   std::shared_ptr<const std::vector<std::int32_t>> stored_order_;
-  std::optional<LevelConnectivity> connectivity_;  ///< for the current level's fields
+  std::optional<LevelConnectivity> connectivity_;  ///< For the fields of the current level.
 
   std::vector<Eigen::Vector4f> next_points_;
   std::vector<Eigen::Vector3f> next_normals_;

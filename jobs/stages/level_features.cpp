@@ -26,13 +26,15 @@ using kernels::SampledContours;
 constexpr std::int64_t kVertexBlock = 4096;
 constexpr std::int64_t kPeakBlock = 64;
 constexpr std::int64_t kContourBlock = 16;
-/// |K| sigma^2 and |H| sigma of a surface that is flat but for the rounding of its points.
+/// Values of |K| sigma^2 and |H| sigma on a surface that is flat up to the rounding of its points.
 constexpr double kFlatGaussian = 1e-6;
 constexpr double kFlatMean = 1e-5;
-/// In |value|: what stands out less is constant but for the errors of K and H, as on spheres.
+/// The least prominence of a peak, in |value|. Peaks below it come from the errors of K and H on
+/// surfaces where they are constant, like spheres.
 constexpr float kLeastProminence = 1e-3f;
 
-/// What `find(range, found)` appends for the blocks of [0, count), in the order of the blocks.
+/// Returns what `find(range, found)` appends for the blocks of [0, count), in the order of the
+/// blocks.
 template <typename Value, typename Find>
 std::vector<Value> collect(engine::Workers& workers, std::int64_t count, std::int64_t block,
                            const Find& find) {
@@ -129,7 +131,7 @@ class Finder {
     return features;
   }
 
-  /// Those of the peaks that stand out and outdo all within the radius.
+  /// Returns the prominent peaks that are higher than all vertices within the radius.
   std::vector<std::int32_t> highest_within_radius(const CurvatureField& field,
                                                   const std::vector<std::int32_t>& peaks,
                                                   const std::vector<float>& prominences) const {
@@ -146,7 +148,8 @@ class Finder {
         });
   }
 
-  /// What features of all kinds have; `at(values)` is a value there of those of all vertices.
+  /// Returns the fields that features of all kinds have. `at(values)` interpolates the values of
+  /// all vertices at the feature.
   template <typename At>
   Feature feature_at(const At& at) const {
     Feature feature;
@@ -191,8 +194,8 @@ class Finder {
     }
   }
 
-  /// On the curved edge, where torsion is defined: chords of a bent surface have corners, whose
-  /// third derivative drowns that of the contour.
+  /// Returns the point on the curved edge. Torsion needs it: chords of a bent surface have corners,
+  /// whose third derivative is much larger than that of the contour.
   Eigen::Vector3d point_at(const EdgePoint& e) const {
     const Eigen::Vector3f& p = fields_.points[e.positive];
     const Eigen::Vector3f& q = fields_.points[e.negative];
@@ -255,8 +258,8 @@ class Finder {
   const LevelFields& fields_;
   engine::Workers& workers_;
   bool curved_;
-  double radius_;                  ///< internal units
-  std::vector<std::int32_t> row_;  ///< of each vertex
+  double radius_;                  ///< In internal units.
+  std::vector<std::int32_t> row_;  ///< Row of each vertex.
   CurvatureField gaussian_;
   CurvatureField mean_;
 };

@@ -15,15 +15,15 @@
 namespace semigeo::jobs {
 namespace {
 
-/// What is known of all runs before they are read.
+/// The sizes of all runs, known before their content is read.
 struct RunTotals {
   io::LibrarySizes sizes;
-  std::vector<std::int64_t> triplets;  ///< of each
-  std::vector<std::int64_t> bytes;     ///< of each one's tables
+  std::vector<std::int64_t> triplets;  ///< Number of triplets of each run.
+  std::vector<std::int64_t> bytes;     ///< Size of the tables of each run.
   std::uint64_t hash = 0;
 };
 
-RunTotals look_at_runs(const LibraryJob& job, engine::Workers& workers) {
+RunTotals totals_of(const LibraryJob& job, engine::Workers& workers) {
   struct Counts {
     std::int64_t features = 0;
     std::int64_t levels = 0;
@@ -50,7 +50,7 @@ RunTotals look_at_runs(const LibraryJob& job, engine::Workers& workers) {
   return totals;
 }
 
-/// All partitions, which together have every shape once.
+/// Opens all partitions, and checks that together they have every shape once.
 std::deque<io::PostingPartition> open_partitions(const LibraryJob& job, const RunTotals& runs) {
   std::deque<io::PostingPartition> partitions;
   int next = 0;
@@ -87,7 +87,7 @@ std::vector<std::uint64_t> cells_of(const std::deque<io::PostingPartition>& part
   return cells;
 }
 
-/// Rows of all partitions, one after the other.
+/// The rows of all partitions, one after the other.
 class PartitionRows {
  public:
   explicit PartitionRows(const std::deque<io::PostingPartition>& partitions) {
@@ -98,7 +98,7 @@ class PartitionRows {
     }
   }
 
-  /// Those from `first` to `last` - 1, or to the end. Thread-safe.
+  /// Returns the rows from `first` to `last` - 1, or to the end. It is thread-safe.
   std::vector<std::byte> read(std::int64_t first, std::int64_t last) const {
     last = std::min(last, end_);
     std::vector<std::byte> rows;
@@ -168,7 +168,7 @@ void write_models(const LibraryJob& job, const RunTotals& runs, std::int64_t mem
 
 LibraryJobResult run_library_job(const LibraryJob& job, const engine::RunContext& context) {
   const std::int64_t memory = memory_or_default(job.memory_bytes);
-  const RunTotals runs = look_at_runs(job, context.workers);
+  const RunTotals runs = totals_of(job, context.workers);
   const std::deque<io::PostingPartition> partitions = open_partitions(job, runs);
   io::HashLibraryWriter writer(job.output, {.parameters = job.parameters, .job_key = job.key},
                                runs.sizes);

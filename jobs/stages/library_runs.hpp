@@ -23,7 +23,7 @@ std::uint64_t for_each_run(const std::vector<std::filesystem::path>& runs, engin
 std::vector<engine::IndexRange> batches_of(std::span<const std::int64_t> sizes,
                                            std::int64_t capacity);
 
-/// Returns the number of bytes that memory_bytes of PartitionJob and LibraryJob means: 0 means
+/// Returns the limit that `memory_bytes` of PartitionJob or LibraryJob stands for: 0 stands for
 /// 512 MiB.
 std::int64_t memory_or_default(std::int64_t memory_bytes);
 

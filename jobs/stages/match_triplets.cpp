@@ -14,7 +14,8 @@ using kernels::Triplet;
 /// The number of postings that stay in the first-level cache while all lookups of a cell pass.
 constexpr std::int64_t kTile = 512;
 
-/// Returns the number of the triangle that each triplet is, in whatever order of corners.
+/// Returns the number of the triangle of each triplet. Triplets that differ only in the order of
+/// their corners have the same number.
 std::vector<std::uint32_t> triangles_of(const std::vector<Triplet>& triplets) {
   struct Place {
     std::uint64_t corners;
@@ -48,7 +49,7 @@ double lot_of(std::uint32_t triangle) {
 /// The lookups of one cell in one block of postings.
 struct Segment {
   std::int64_t block;
-  std::int64_t first_posting;  ///< within the block
+  std::int64_t first_posting;  ///< Index in the block.
   std::int64_t last_posting;
   std::size_t first_lookup;
   std::size_t last_lookup;
@@ -227,9 +228,9 @@ class Matcher {
   std::vector<std::uint32_t> triangles_;  ///< Number of the triangle of each triplet.
   const LookUpTuning& tuning_;
   std::vector<std::size_t> first_lookup_;  ///< (cells + 1)
-  std::vector<std::uint32_t> lookups_;     ///< triplets of the scene
+  std::vector<std::uint32_t> lookups_;     ///< Indices of triplets of the scene.
   std::vector<Segment> segments_;
-  std::vector<std::pair<std::size_t, std::size_t>> blocks_;  ///< ranges of segments
+  std::vector<std::pair<std::size_t, std::size_t>> blocks_;  ///< Ranges of segments.
 };
 
 }  // namespace

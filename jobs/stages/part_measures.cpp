@@ -9,10 +9,11 @@ namespace semigeo::jobs {
 namespace {
 
 constexpr std::int64_t kFaceBlock = 8192;
-/// Of the cube of the mean radius; a ball has 4. Below, the volume may be one of folds.
+/// The least credible volume, as a share of the cube of the mean radius (a ball has 4). A smaller
+/// volume may be that of folds.
 constexpr double kLeastVolume = 1e-3;
 
-/// Faces one after the other that belong to one part.
+/// A sequence of consecutive faces that belong to one part.
 struct Stretch {
   std::int32_t part;
   PartMeasure measure;

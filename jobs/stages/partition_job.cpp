@@ -46,7 +46,7 @@ constexpr std::int64_t kSortBytes = sizeof(Entry) + io::kPostingBytes;  // of ea
 constexpr std::int64_t kSortedBytes = 1 << 20;                          // at once, by a thread
 constexpr std::int64_t kReadBytes = sizeof(Triplet) + 24;
 
-/// Cells that are sorted at once: all of some shapes, or some of one shape.
+/// The cells that are sorted at once: all cells of some shapes, or some cells of one shape.
 struct Slice {
   std::uint32_t first = 0;
   std::uint32_t end = 0;
@@ -160,7 +160,7 @@ class PartitionBuild {
     }
   }
 
-  /// A run's triplets of a slice, and how many there are of each shape; later where those go.
+  /// The triplets of a run in a slice, with their number for each shape; later with their places.
   struct RunPart {
     std::vector<Triplet> triplets;
     std::vector<std::size_t> of_shape;
@@ -265,8 +265,8 @@ class PartitionBuild {
 
   const PartitionJob& job_;
   engine::Workers& workers_;
-  std::int64_t capacity_;          ///< postings sorted at once
-  std::int64_t batches_capacity_;  ///< triplets read at once
+  std::int64_t capacity_;          ///< Number of postings sorted at once.
+  std::int64_t batches_capacity_;  ///< Number of triplets read at once.
   std::vector<engine::IndexRange> batches_;
   std::vector<std::int64_t> shape_counts_;
   std::vector<std::uint32_t> cell_counts_;

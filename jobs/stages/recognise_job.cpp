@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kMostLevels = 16;
 
-/// The numbers of `scene` are filled in.
+/// Reads the features of a scene, and fills in the numbers of `scene`.
 kernels::RecognitionModel read_scene(const RecogniseJob& job,
                                      const RecognitionParameters& parameters,
                                      const engine::RunContext& context, RecognisedScene& scene) {

@@ -36,8 +36,8 @@ struct RecogniseJobResult {
 RecognitionParameters parameters_of(const io::HashLibrary& library);
 
 /// Returns the least score of an object if none is given. For kThesis it is 0: there a score is the
-/// size of a cluster, which grows with the number of features, and has a meaning only beside the
-/// scores of other models.
+/// size of a cluster, which grows with the number of features, so that scores can only be compared
+/// within one scene.
 double default_min_score(RecognitionMethod method);
 
 /// Writes the file. Throws io::Error if the scene cannot be read or used, if the library is

@@ -13,16 +13,16 @@
 
 namespace semigeo::jobs {
 
-// What was recognised in a scene, as a JSON file that carries its key and a digest of itself. It
-// holds no time, place or host: the same scene and library give the same bytes.
+// The objects that were recognised in a scene, as a JSON file with its key and a digest of its
+// content. It holds no time, path or host: the same scene and library give the same bytes.
 
-/// What the file says about the scene.
+/// The scene as the file describes it.
 struct RecognisedScene {
   std::string name = {};
-  std::string input_name = {};  ///< UTF-8
+  std::string input_name = {};  ///< File name of the scene, as UTF-8.
   std::string xxh3 = {};
   std::string format = {};                  ///< File format of the scene.
-  std::optional<ScanRepairs> repairs = {};  ///< only of a scan
+  std::optional<ScanRepairs> repairs = {};  ///< Empty if the scene is a dataset.
   std::int64_t vertices = 0;
   std::int64_t triangles = 0;
   std::int64_t features = 0;
@@ -32,7 +32,7 @@ struct RecognisedScene {
 /// The largest number of models in the ranking of the file.
 inline constexpr std::size_t kMostRanked = 20;
 
-/// Writes the file, whole or not at all. Throws io::Error if it cannot be written.
+/// Writes the file completely or not at all. Throws io::Error if it cannot be written.
 void write_recognised(const std::filesystem::path& path, const std::string& key,
                       const RecognisedScene& scene, const io::HashLibrary& library,
                       const SearchParameters& parameters, const Recognition& recognition);

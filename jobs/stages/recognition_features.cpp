@@ -20,7 +20,7 @@ using kernels::Feature;
 using kernels::FeatureKind;
 using kernels::OrientedFeature;
 
-/// What is weaker than this comes and goes with noise and triangulation.
+/// Weaker features depend on noise and triangulation.
 constexpr float kMinScaleFree = 0.1F;  // |H| sigma, and sqrt(|K|) sigma
 
 constexpr EvolutionOptions kOctaves = {.schedule = Schedule::kOctaves, .rescale = Rescale::kNone};
@@ -50,7 +50,7 @@ float strength(const OrientedFeature& feature, FeatureKind kind) {
   return std::abs(feature.value);
 }
 
-/// The strongest of one kind, in the order in which they were.
+/// Adds the strongest features of one kind, in their order.
 void add_strongest(const std::vector<Feature>& features, FeatureKind kind, int level, double scale,
                    const RecognitionParameters& parameters, kernels::OrientedFeatures& result) {
   std::vector<OrientedFeature> strong;
@@ -87,13 +87,13 @@ void measure(const std::vector<Vector3f>& points, kernels::RecognitionModel& mod
 
 using Triangles = std::vector<std::array<std::int32_t, 3>>;
 
-/// Small scans have no more to say.
+/// Returns the number of samples, which is smaller for small scans.
 std::int64_t samples_of(const Triangles& triangles, const RecognitionParameters& parameters) {
   return std::min<std::int64_t>(parameters.samples,
                                 4 * static_cast<std::int64_t>(triangles.size()));
 }
 
-/// How many octave levels, the first of which has this sigma.
+/// Returns the number of octave levels if the first one has this sigma.
 int levels_of(double first_scale, float diagonal, const RecognitionParameters& parameters) {
   constexpr int kMostLevels = 10;
   int levels = parameters.levels;
@@ -104,7 +104,7 @@ int levels_of(double first_scale, float diagonal, const RecognitionParameters& p
   return levels;
 }
 
-/// Features on octave levels, and samples of level 0.
+/// Finds the features on octave levels, and samples level 0.
 void evolve(const kernels::Surface& surface, const RecognitionParameters& parameters,
             const engine::RunContext& context, kernels::RecognitionModel& model) {
   EvolvingSurface evolving(kernels::reordered(surface, kernels::locality_order(surface)), kOctaves,
@@ -126,7 +126,7 @@ void evolve(const kernels::Surface& surface, const RecognitionParameters& parame
   }
 }
 
-/// Whether features of a dataset are those that its surface would be evolved anew for.
+/// Returns whether the dataset has the features that evolving its surface again would give.
 bool has_octaves(const io::Dataset& dataset) {
   try {
     const SurfaceParameters made = surface_parameters_from_json(dataset.header().parameters);

@@ -8,11 +8,11 @@ namespace semigeo::jobs {
 namespace {
 
 constexpr std::int64_t kFaceBlock = 8192;
-/// Sides and heights that refining makes exceed the shortest side by this factor, so that what the
-/// mean edge length does next cannot make them odd.
+/// The sides and heights that refining makes exceed the shortest side by this factor, so that a
+/// change of the mean edge length cannot make them odd.
 constexpr double kMargin = 2;
 
-/// Faces or edges that `find` picks from ranges of faces, in the order of the faces.
+/// Returns the faces or edges that `find` picks from ranges of faces, in the order of the faces.
 template <typename Find>
 std::vector<std::int32_t> find_all(const kernels::LevelMesh& mesh,
                                    const engine::RunContext& context, const Find& find) {
@@ -29,7 +29,7 @@ std::vector<std::int32_t> find_all(const kernels::LevelMesh& mesh,
   return all;
 }
 
-/// One face of each part that is to be dropped.
+/// Returns at least one face of each part that is to be dropped.
 std::vector<std::int32_t> faces_of_dropped(const kernels::LevelMesh& mesh,
                                            std::span<const std::uint8_t> dropped) {
   std::vector<std::int32_t> faces;

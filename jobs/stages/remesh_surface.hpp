@@ -13,7 +13,7 @@ namespace semigeo::jobs {
 /// "a small fraction").
 inline constexpr double kShortestSide = 0.1;
 
-/// What remeshing needs to know besides the mesh.
+/// The options of remeshing.
 struct RemeshOptions {
   bool curved = true;  ///< New vertices lie on the curved surface; otherwise on the edges.
   double first_edge_length = 0;                ///< Mean edge length of level 0.
@@ -32,10 +32,10 @@ struct RemeshResult {
 
 /// Drops parts, removes odd triangles, and refines. Afterwards no side and no height is below
 /// kShortestSide times the mean edge length of the mesh, or of level 0 if that is longer: patches
-/// are laid with the step of level 0, and do not see what is finer. Refining makes none below twice
-/// that. `parts` are the measures of the mesh as it comes. The search over faces runs on all
-/// workers, editing runs on one; the result does not depend on the number of threads. Source:
-/// thesis 5.5, 6.1.1.
+/// are laid with the step of level 0, and do not resolve anything finer. Refining makes no side and
+/// no height below twice that. `parts` are the measures of the mesh as it comes. The search over
+/// faces runs on all workers, editing runs on one; the result does not depend on the number of
+/// threads. Source: thesis 5.5, 6.1.1.
 RemeshResult remesh_surface(kernels::LevelMesh& mesh, std::vector<PartMeasure> parts,
                             const RemeshOptions& options, const engine::RunContext& context);
 

@@ -10,7 +10,7 @@
 namespace semigeo::jobs {
 namespace {
 
-/// Mean edge lengths beyond which single precision cannot hold curvatures (length^-2).
+/// Beyond these mean edge lengths single precision cannot hold curvatures (length^-2).
 constexpr double kShortestMeanEdge = 1e-12;
 constexpr double kLongestMeanEdge = 1e12;
 

@@ -15,14 +15,15 @@ using kernels::kFeatureKinds;
 using kernels::RecognitionModel;
 using kernels::ThesisTriplet;
 
-/// Scene triplets that are looked up together.
+/// Number of triplets of the scene that are looked up together.
 constexpr std::int64_t kBlock = 256;
-/// Poses of a model that are clustered; of more, evenly chosen ones.
+/// The largest number of poses of a model that are clustered. If there are more, they are thinned
+/// out evenly.
 constexpr std::size_t kMostPoses = 20000;
 
 }  // namespace
 
-/// A triplet of a model that one of the scene agrees with.
+/// A triplet of a model and the triplet of the scene that agrees with it.
 struct ThesisDatabase::Match {
   std::uint32_t model = 0;
   std::array<std::uint16_t, 3> model_corners = {};
