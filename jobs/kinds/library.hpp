@@ -10,11 +10,11 @@
 
 namespace semigeo::jobs {
 
-/// What a library job knows besides its head: runs and partitions become a hash library. The input
-/// of its head is the folder of the library's parts.
+/// The data of a library job, which makes a hash library of runs and partitions. The input of the
+/// job is the folder of the library's parts.
 struct LibraryJobData {
   std::vector<std::string> models = {};  ///< Names of all models, sorted.
-  int partitions = 0;                    ///< How many partitions there are.
+  int partitions = 0;                    ///< Number of partitions.
   RecognitionParameters parameters = {};
 };
 

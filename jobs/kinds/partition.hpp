@@ -11,12 +11,12 @@
 
 namespace semigeo::jobs {
 
-/// What a partition job knows besides its head: the runs of all models become the postings of some
-/// shapes. The input of its head is the folder of the library's parts.
+/// The data of a partition job, which makes the postings of some shapes of the runs of all models.
+/// The input of the job is the folder of the library's parts.
 struct PartitionJobData {
   std::vector<std::string> models = {};  ///< Names of all models, sorted.
   io::ShapeRange shapes = {};
-  int partitions = 1;                  ///< How many partitions share the triplets.
+  int partitions = 1;                  ///< Number of partitions that share the triplets.
   std::filesystem::path library = {};  ///< The library that the partition is a part of.
   RecognitionParameters parameters = {};
 };

@@ -9,14 +9,13 @@
 
 namespace semigeo::jobs {
 
-/// What a recognise job knows besides its head: a scene and a library become the list of the models
-/// that are in the scene.
+/// The data of a recognise job, which lists the models of a library that are in a scene.
 struct RecogniseJobData {
-  std::string input_name = {};            ///< What the output says of the scene's name, as UTF-8.
+  std::string input_name = {};            ///< Name of the scene in the output, as UTF-8.
   std::string input_xxh3 = {};            ///< Digest of the scene's bytes.
-  std::filesystem::path library = {};     ///< Where the models are looked for.
+  std::filesystem::path library = {};     ///< File of the library.
   std::string library_digest = {};        ///< Digest of the library's content.
-  RecognitionParameters parameters = {};  ///< Of the library: estimates depend on them.
+  RecognitionParameters parameters = {};  ///< Those of the library, for estimates.
   SearchParameters search = {};
 };
 

@@ -8,9 +8,9 @@
 
 namespace semigeo::jobs {
 
-/// What a surface job knows besides its head: the scan becomes a dataset.
+/// The data of a surface job, which makes a dataset of a scan.
 struct SurfaceJobData {
-  std::string input_name = {};  ///< What the dataset says of its scan's name, as UTF-8.
+  std::string input_name = {};  ///< Name of the scan in the dataset, as UTF-8.
   std::string input_xxh3 = {};  ///< Digest of the scan's bytes.
   SurfaceParameters parameters = {};
   bool sidecar_only = false;  ///< Only the dataset's .xdmf is to be made again, if possible.

@@ -8,7 +8,7 @@
 
 namespace semigeo::jobs {
 
-/// What a triplets job knows besides its head: a dataset becomes a run, the triplets of one model.
+/// The data of a triplets job, which makes a run, the triplets of one model, of a dataset.
 struct TripletsJobData {
   RecognitionParameters parameters = {};
 };

@@ -33,17 +33,17 @@ struct JobWords {
   std::string memory_remedy = {};  ///< ", or decimate the scan": follows "give more memory".
   bool stands_for_scan = false;    ///< Users know the job by its name alone.
   bool merges_files = false;       ///< The job makes one file of many.
-  std::vector<std::string> headings = {};  ///< Of the lines of its reports, in their order.
+  std::vector<std::string> headings = {};  ///< Headings of its reports, in their order.
 };
 
-/// What estimates of a plan's jobs are made from.
+/// The inputs of an estimate.
 struct EstimateContext {
   std::span<const PlannedJob> plan;
   const Estimates& learned;    ///< What the archive knows about scans.
   std::uint64_t memory_bytes;  ///< Memory of all jobs that run side by side; 0: not told.
 };
 
-/// What a running job is given.
+/// The resources of a running job.
 struct JobContext {
   engine::RunContext engine;
   std::uint64_t memory_bytes = 0;  ///< Memory of all jobs that run side by side; 0: not told.
@@ -56,14 +56,14 @@ struct ExternalFile {
   bool is_readable = true;
 };
 
-/// What a run tells about one job that is done.
+/// The report of a run about one job that is done.
 struct JobReport {
   std::vector<std::pair<std::string, nlohmann::json>> fields;  ///< Members of its JSON object.
-  std::vector<std::pair<std::string, std::string>>
-      lines;  ///< Headings and texts, at most one each.
+  /// Headings and texts, at most one text for each heading.
+  std::vector<std::pair<std::string, std::string>> lines;
 };
 
-/// What a run tells at its end about a job, whatever has become of it.
+/// The report at the end of a run about a job, whether it is done or not.
 struct JobSummary {
   std::string text;
   std::vector<std::pair<std::string, nlohmann::json>> fields;  ///< Members of the run's document.

@@ -4,7 +4,7 @@
 
 namespace semigeo::jobs {
 
-/// What has become of a job in a run.
+/// The state of a job at the end of a run.
 enum class JobState {
   kDone,
   kUpToDate,

@@ -11,7 +11,7 @@
 
 namespace semigeo::jobs {
 
-/// What holds for all jobs of an execution, wherever they run.
+/// The settings of all jobs of an execution, wherever they run.
 struct ExecutionSettings {
   engine::Amount total = {};       ///< Cores and bytes of all jobs that run side by side.
   std::uint64_t memory_bytes = 0;  ///< The bytes that the user has given; 0: not told.
@@ -23,20 +23,20 @@ struct ExecutionSettings {
 
 /// Returns the seconds since the execution began.
 using RunClock = std::function<double()>;
-/// Starts a clock that really runs.
+/// Returns a clock that measures real time.
 RunClock steady_clock();
 
-/// Returns what each job of a plan is expected to need on one thread; nothing for what does not
-/// run.
+/// Returns what each job of a plan is expected to need on one thread. Jobs that do not run need
+/// nothing.
 std::vector<Estimate> estimates_of(const std::vector<PlannedJob>& plan, const Estimates& learned,
                                    std::uint64_t memory_bytes);
 
 /// Runs the jobs of a plan that are not up to date, in the order that Scheduler decides. A job
-/// begins when those before it have ended, well or not, and takes what they have left
-/// (JobKind::resolve_inputs); one that finds nothing to begin with is skipped if one before it has
-/// failed. A job whose process was lost is tried again, `retries` times. The first signal lets the
-/// running jobs end and starts no more; the second ends them. outcomes[i] belongs to plan[i].
-/// Throws what the runner throws.
+/// begins when those before it have ended, whether done or failed, and takes the outputs that exist
+/// (JobKind::resolve_inputs). A job without inputs is skipped if a job before it has failed. A job
+/// whose process was lost is tried again, `retries` times. The first signal lets the running jobs
+/// end and starts no more; the second ends them. outcomes[i] belongs to plan[i]. Throws what the
+/// runner throws.
 std::vector<JobOutcome> execute(std::vector<PlannedJob> plan, Runner& runner,
                                 const ExecutionSettings& settings, Progress& progress,
                                 JobListener* listener = nullptr,

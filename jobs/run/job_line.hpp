@@ -17,16 +17,16 @@ struct JobRequest {
   int threads = 1;                 ///< Threads that the job may use at once.
   std::uint64_t memory_bytes = 0;  ///< Memory of all jobs that run side by side; 0: not told.
   std::uint64_t address_space_bytes = 0;  ///< Address space of the process; 0: no limit.
-  std::filesystem::path log;              ///< The file to which what the job prints is appended.
+  std::filesystem::path log;              ///< The file to which the output of the job is appended.
 };
 
-/// What has become of a job, or how much work was done meanwhile.
+/// The outcome of a job, or how much work was done meanwhile.
 struct JobReply {
   enum class Kind { kWorked, kDone, kFailed };
   Kind kind = Kind::kFailed;
   std::int64_t worked = 0;     ///< Vertices times levels since the last reply.
   std::string error = {};      ///< Why the job failed: one sentence.
-  nlohmann::json result = {};  ///< What a job that is done tells, as its kind writes it; or null.
+  nlohmann::json result = {};  ///< Result of a job that is done, as its kind writes it, or null.
   double cpu_seconds = 0;      ///< CPU time of this job.
   double peak_bytes = 0;       ///< The most memory that the process had resident during the job.
 };

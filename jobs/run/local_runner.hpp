@@ -13,21 +13,21 @@
 
 namespace semigeo::jobs {
 
-/// What the jobs of a run may take, and where; 0 = the program decides.
+/// The limits of the jobs of a run, and where they print. 0 means that the program decides.
 struct ExecutorOptions {
   std::filesystem::path program;     ///< `PROGRAM job` is a worker.
   std::filesystem::path logs;        ///< Folder for what jobs print.
   int threads = 0;                   ///< Threads of all jobs at once; 0: one per core.
-  std::uint64_t memory_bytes = 0;    ///< Of all jobs that run side by side; 0: what is free.
+  std::uint64_t memory_bytes = 0;    ///< Memory of all jobs at once; 0: what is free.
   std::uint64_t memory_per_job = 0;  ///< Address space of one job; 0: several times the estimate.
   double timeout_seconds = 0;        ///< Wall time of one job; 0: many times the estimate.
   int retries = 1;                   ///< Further attempts at a job that a signal or a limit ended.
   bool fail_fast = false;            ///< Nothing starts after the first failure.
   Estimates estimates = {};          ///< What is known about scans.
   double most_seconds = 0;           ///< Nothing starts that would not end in time; 0: no limit.
-  /// Takes what workers print outside of jobs. If it is empty, that is workers.log in `logs`; the
-  /// folder then belongs to this run, and empty logs in it are removed at the end. If not, other
-  /// runs may have just opened theirs in it.
+  /// File for what workers print outside of jobs. If it is empty, the file is workers.log in
+  /// `logs`; the folder then belongs to this run, and empty logs in it are removed at the end.
+  /// Otherwise they are kept, because other runs may have just opened them.
   std::filesystem::path worker_log = {};
 };
 

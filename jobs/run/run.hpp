@@ -29,24 +29,24 @@ struct RunSummary {
   }
 };
 
-/// What a run is told.
+/// The settings of a run.
 struct RunSettings {
   /// Folder that has the lock, the journal, the logs and what was learned.
   std::filesystem::path home;
   std::string program_version;  ///< For the journal.
   int threads = 0;              ///< For the journal; 0: one per core.
-  bool verify = false;          ///< What is to be verified is not taken from the digest cache.
-  bool is_archive = true;       ///< The home has scans: what was learned of them is kept.
-  bool is_kept = true;  ///< Others know the home; if not, there is neither lock nor journal.
+  bool verify = false;          ///< Outputs are read instead of trusting the digest cache.
+  bool is_archive = true;       ///< The home is an archive; rates of its jobs are learned.
+  bool is_kept = true;          ///< The home is kept; otherwise it gets neither lock nor journal.
 };
 
-/// What a run asks whoever starts it.
+/// The functions that a run calls.
 struct RunHooks {
-  /// Makes the plan. It reads only, and is called when the home belongs to the run.
+  /// Makes the plan and writes nothing. It is called after the home was locked.
   std::function<std::vector<PlannedJob>(DigestCache&)> plan;
-  /// Prepares the home before jobs run; called only if the home can be written.
+  /// Prepares the home before jobs run. It is called only if the home can be written.
   std::function<void(const std::vector<PlannedJob>&)> prepare = {};
-  /// Is told the plan before the jobs run.
+  /// Receives the plan before jobs run.
   std::function<void(const std::vector<PlannedJob>&)> planned = {};
   /// Returns the runner of the jobs, which must live as long as the run.
   std::function<Runner&(const std::vector<PlannedJob>&)> runner;

@@ -14,11 +14,11 @@ namespace semigeo::jobs {
 
 /// A job that is to be started now.
 struct JobStart {
-  std::size_t number;         ///< Its place in the plan.
+  std::size_t number;         ///< Its index in the plan.
   const PlannedJob* planned;  ///< Lives as long as the runner is used.
-  Estimate estimate;          ///< What it is expected to need.
+  Estimate estimate;          ///< Its expected needs.
   engine::Amount share;       ///< The cores and bytes that it was admitted with.
-  int attempt;                ///< 1 for the first.
+  int attempt;                ///< The number of the attempt, from 1.
 };
 
 /// A job has begun, where that is known only later than its start.

@@ -15,10 +15,10 @@ struct SchedulerOptions {
   double most_seconds = 0;   ///< Nothing starts that is not expected to end in time; 0: no limit.
   int retries = 1;           ///< Further attempts at a job whose process was lost.
   bool fail_fast = false;    ///< Nothing starts after the first failure.
-  bool all_at_once = false;  ///< Every job may start now: who runs them orders and admits them.
+  bool all_at_once = false;  ///< Every job may start now: the runner orders and admits them.
 };
 
-/// What the scheduler is told of a job.
+/// What the scheduler knows about a job.
 struct ScheduledJob {
   std::vector<std::size_t> after = {};  ///< Jobs that must have ended before; smaller numbers.
   Estimate estimate = {};
@@ -47,7 +47,7 @@ class Scheduler {
   /// Ends a job, running or not, with a state other than kNotRun.
   void end(std::size_t job, JobState state);
 
-  /// What follows when a running job's process is lost.
+  /// The consequence of a lost process of a running job.
   enum class Loss {
     kRetry,   ///< The job is going to start again.
     kFailed,  ///< The job has ended.

@@ -23,7 +23,7 @@ namespace semigeo::jobs {
 /// An array job that Slurm has taken.
 struct SubmittedStage {
   std::string name;  ///< "semigeo-surface": names the kind of its jobs.
-  std::string job;   ///< Slurm's number.
+  std::string job;   ///< Id of the job in Slurm.
   int tasks = 0;
 };
 
@@ -47,23 +47,23 @@ class SlurmRunner : public Runner {
   void cancel_waiting() override;
   void cancel_running() override;
 
-  /// Returns what was given to Slurm.
+  /// Returns the stages that were submitted to Slurm.
   std::vector<SubmittedStage> submitted() const;
 
  private:
   struct WatchedTask {
     std::vector<std::size_t> jobs;
-    std::optional<FileStamp> seen = {};  ///< Of the results that were read last.
+    std::optional<FileStamp> seen = {};  ///< Stamp of the results that were read last.
     TaskResults results = {};
     bool started = false;
     bool gone = false;   ///< It was not in the queue the last time.
-    bool ended = false;  ///< Nothing more will come of it.
+    bool ended = false;  ///< It has ended, and its jobs were judged.
     bool lost = false;   ///< It ended without a result for some of its jobs.
   };
   struct WatchedStage {
     SlurmStage stage;
     std::vector<WatchedTask> tasks = {};
-    std::string job = {};  ///< Slurm's number.
+    std::string job = {};  ///< Id of the job in Slurm.
   };
   void submit(SlurmStage stage);
   void watch(WatchedStage& watched);
