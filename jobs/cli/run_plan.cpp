@@ -69,8 +69,13 @@ class ChosenRunner {
   std::unique_ptr<SlurmRunner> slurm_;
 };
 
+/// Prints what a run has done. Returns its exit code.
 int print_results(const ExecutionOptions& options, const PlanSource& source,
-                  const RunResult& result) {
+                  const RunResult& result, const std::vector<SubmittedStage>& submitted) {
+  if (!options.slurm.wait && !submitted.empty()) {
+    print_submitted(submitted, options.json);
+    return result.summary.failed == 0 ? kAllDone : kSomeFailed;
+  }
   if (source.print) {
     source.print(result);
   } else if (options.json) {
@@ -95,19 +100,18 @@ int run(const ExecutionOptions& options, const PlanSource& source) {
       print_plan(plan, false, true);
       std::fflush(stdout);  // it is to be read while the jobs run
     };
-  const RunResult result = perform_run({.home = source.home,
-                                        .program_version = SEMIGEO_VERSION,
-                                        .threads = options.limits.threads,
-                                        .verify = options.verify,
-                                        .is_archive = source.is_archive,
-                                        .is_kept = source.is_kept},
-                                       hooks);
-  const auto submitted = chosen.submitted();
-  if (!options.slurm.wait && !submitted.empty()) {
-    print_submitted(submitted, options.json);
-    return result.summary.failed == 0 ? kAllDone : kSomeFailed;
-  }
-  return print_results(options, source, result);
+  int exit_code = kAllDone;
+  hooks.ended = [&](const RunResult& result) {
+    exit_code = print_results(options, source, result, chosen.submitted());
+  };
+  perform_run({.home = source.home,
+               .program_version = SEMIGEO_VERSION,
+               .threads = options.limits.threads,
+               .verify = options.verify,
+               .is_archive = source.is_archive,
+               .is_kept = source.is_kept},
+              hooks);
+  return exit_code;
 }
 
 }  // namespace

@@ -42,6 +42,7 @@ class Run {
     count_own_usage();
     end_journal();
     learn();
+    if (hooks_.ended) hooks_.ended(result_);
     return std::move(result_);
   }
 

@@ -40,6 +40,13 @@ struct RunSettings {
   bool is_kept = true;          ///< The home is kept; otherwise it gets neither lock nor journal.
 };
 
+/// The plan of a run and what has become of its jobs.
+struct RunResult {
+  std::vector<PlannedJob> plan;
+  std::vector<JobOutcome> outcomes;  ///< outcomes[i] belongs to plan[i].
+  RunSummary summary;
+};
+
 /// The functions that a run calls.
 struct RunHooks {
   /// Makes the plan and writes nothing. It is called after the home was locked.
@@ -55,12 +62,9 @@ struct RunHooks {
   std::function<ExecutionSettings()> settings;
   /// Is told, in one sentence each, what went wrong without being a failure of the run.
   std::function<void(const std::string&)> warn;
-};
-
-struct RunResult {
-  std::vector<PlannedJob> plan;
-  std::vector<JobOutcome> outcomes;  ///< outcomes[i] belongs to plan[i].
-  RunSummary summary;
+  /// Receives the result while the home is still locked, so that no other run replaces the outputs
+  /// that are read for a report.
+  std::function<void(const RunResult&)> ended = {};
 };
 
 /// Makes a plan and executes it: takes the lock of the home, plans, opens the journal, executes the

@@ -89,6 +89,18 @@ TEST_F(RunTest, LocksPlansJournalsAndExecutesInThisOrder) {
   EXPECT_TRUE(warnings_.empty());
 }
 
+TEST_F(RunTest, TheHomeIsLockedUntilTheResultIsTold) {
+  bool told = false;
+  hooks_.ended = [&](const RunResult& result) {
+    told = true;
+    EXPECT_EQ(result.summary.done, 2);
+    EXPECT_EQ(journal().back(), "end");
+    EXPECT_THROW(ArchiveLock second(settings_.home), LockedError);
+  };
+  run();
+  EXPECT_TRUE(told);
+}
+
 TEST_F(RunTest, AnotherRunHasTheHome) {
   fs::create_directories(settings_.home);
   const ArchiveLock other(settings_.home);

@@ -155,7 +155,7 @@ TEST(SchedulerTest, FailFastStopsAtTheFirstFailure) {
   EXPECT_EQ(Scheduler(unreadable, options).next(0), std::nullopt);
 }
 
-TEST(SchedulerTest, WhoOrdersJobsHimselfIsGivenAllAtOnce) {
+TEST(SchedulerTest, ARunnerThatOrdersJobsIsGivenAllAtOnce) {
   SchedulerOptions options = cores(1);
   options.all_at_once = true;
   options.most_seconds = 1;
