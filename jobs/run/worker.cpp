@@ -148,11 +148,15 @@ class JobLog {
   std::vector<engine::Descriptor> before_;
 };
 
-void limit_address_space(std::uint64_t bytes) {
+/// Limits the address space of this process to the given number of bytes; 0 stands for no limit.
+/// Does nothing in a sanitized build, because the sanitizers reserve terabytes for themselves.
+void limit_address_space([[maybe_unused]] std::uint64_t bytes) {
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0) return;
   limit.rlim_cur = bytes == 0 ? limit.rlim_max : std::min<rlim_t>(bytes, limit.rlim_max);
   setrlimit(RLIMIT_AS, &limit);
+#endif
 }
 
 /// Returns the fault that SEMIGEO_TEST_FAULTS names for this job, or an empty text.

@@ -15,6 +15,7 @@
 #include "jobs/archive/scan_size.hpp"
 #include "jobs/stages/surface_job.hpp"
 #include "tests/jobs/scans_to_run.hpp"
+#include "tests/support/sanitizers.hpp"
 #include "tests/support/scan_file.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -262,6 +263,7 @@ TEST_F(FaultTest, AJobThatWaitsForEverIsEnded) {
 }
 
 TEST_F(FaultTest, AMemoryBombIsNotTriedAgain) {
+  if (tests::kSanitized) GTEST_SKIP() << "the address space is not limited";
   const tests::TestFaults faults("b.obj=memory");
   options_.memory_per_job = std::uint64_t{600} << 20;
   const std::string error = error_of_b();

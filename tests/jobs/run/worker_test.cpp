@@ -15,6 +15,7 @@
 #include "jobs/kinds/surface.hpp"
 #include "jobs/run/job_line.hpp"
 #include "tests/jobs/scans_to_run.hpp"
+#include "tests/support/sanitizers.hpp"
 #include "tests/support/scan_file.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -179,6 +180,7 @@ TEST_F(WorkerTest, ALineThatIsNoRequestEndsIt) {
 }
 
 TEST_F(WorkerTest, MemoryBeyondTheLimitIsAFailureAndTheNextJobHasIts) {
+  if (tests::kSanitized) GTEST_SKIP() << "the address space is not limited";
   const tests::TestFaults faults("bomb.obj=memory");
   const auto worker = start();
   JobRequest bomb = request("bomb.obj");
@@ -202,6 +204,7 @@ TEST_F(WorkerTest, MemoryBeyondTheLimitIsAFailureAndTheNextJobHasIts) {
 }
 
 TEST_F(WorkerTest, HoweverLittleMemoryThereIsTheFailureNamesTheScan) {
+  if (tests::kSanitized) GTEST_SKIP() << "the address space is not limited";
   JobRequest wanted = request("a.obj", 5);
   wanted.threads = 2;  // the second needs room for its stack
   const std::string output = wanted.job.output.string();
