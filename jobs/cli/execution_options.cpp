@@ -51,7 +51,7 @@ Table end_rows() {
        .value = Duration<Options>{field<kLimits, &ExecutorOptions::most_seconds>()},
        .in_configuration = false},
       {.name = "until",
-       .help = "Likewise, by the clock on the wall (06:00)",
+       .help = "Start nothing that will not end before this time of day (06:00)",
        .value = Text<Options>{field<&Options::until>()},
        .in_configuration = false},
   };

@@ -39,20 +39,21 @@ void add_to(nlohmann::json& document, const PlannedJob& planned, nlohmann::json&
   document[stands_for_scan ? "scans" : "jobs"].push_back(std::move(entry));
 }
 
-/// Prints the reports of the jobs of one kind, heading by heading.
+/// Prints the reports of the jobs of one kind: the first lines of all jobs, then the second ones.
 void print_reports(const RunResult& result, const JobKind& kind) {
   std::vector<std::pair<std::size_t, JobReport>> reports;
+  std::size_t most_lines = 0;
   for (std::size_t i = 0; i < result.plan.size(); ++i) {
     const Job& job = result.plan[i].job;
     if (job.kind != &kind || !result.outcomes[i].result.has_value()) continue;
     reports.emplace_back(i, kind.report(job, result.outcomes[i].result));
+    most_lines = std::max(most_lines, reports.back().second.lines.size());
   }
-  for (const std::string& heading : kind.words().headings)
+  for (std::size_t k = 0; k < most_lines; ++k)
     for (const auto& [i, report] : reports)
-      for (const auto& [name, text] : report.lines)
-        if (name == heading)
-          std::printf("%s: %s: %s\n", heading.c_str(), result.plan[i].job.name.c_str(),
-                      text.c_str());
+      if (k < report.lines.size() && !report.lines[k].text.empty())
+        std::printf("%s: %s: %s\n", report.lines[k].heading.c_str(),
+                    result.plan[i].job.name.c_str(), report.lines[k].text.c_str());
 }
 
 /// Returns the kinds of a plan, in the order in which they appear.

@@ -17,6 +17,12 @@ inline std::string refuse_nan(const std::string& text) {
   return CLI::detail::lexical_cast(text, value) && std::isnan(value) ? "give a number" : "";
 }
 
+/// Refuses a negative number, with or without a unit: CLI11 would read "-1" as a huge size.
+inline std::string refuse_negative(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  return first != std::string::npos && text[first] == '-' ? "give no negative number" : "";
+}
+
 /// Adds the option of one parameter to a command: a function for each kind of value.
 template <typename Owner>
 class AddOption {
@@ -75,13 +81,15 @@ class AddOption {
   }
   CLI::Option* operator()(const Size<Owner>& size) const {
     return command_.add_option(name_, size.field.edit(owner_), help_)
-        ->transform(CLI::AsSizeValue(false));
+        ->transform(CLI::AsSizeValue(false))
+        ->transform(CLI::Validator(refuse_negative, ""));
   }
   CLI::Option* operator()(const Duration<Owner>& duration) const {
     const std::map<std::string, double> units = {
         {"s", 1}, {"min", 60}, {"m", 60}, {"h", 3600}, {"d", 86400}};
     return command_.add_option(name_, duration.field.edit(owner_), help_)
-        ->transform(CLI::AsNumberWithUnit(units, CLI::AsNumberWithUnit::UNIT_OPTIONAL, "DURATION"));
+        ->transform(CLI::AsNumberWithUnit(units, CLI::AsNumberWithUnit::UNIT_OPTIONAL, "DURATION"))
+        ->transform(CLI::Validator(refuse_negative, ""));
   }
   CLI::Option* operator()(const Texts<Owner>& texts) const {
     return command_.add_option(name_, texts.field.edit(owner_), help_)

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "io/files/error.hpp"
 #include "jobs/kinds/triplets.hpp"
+#include "jobs/plan/job_kind.hpp"
 
 namespace semigeo::jobs {
 namespace {
@@ -36,9 +36,7 @@ std::vector<std::string> keep_models_with_runs(std::vector<std::string>& models,
     kept_keys.push_back(key);
   }
   models = std::move(kept);
-  if (models.empty())
-    throw io::Error(output, "", "there is no model to make it of",
-                    "see why the jobs before it failed, and run again");
+  if (models.empty()) throw missing_input(output, "model");
   return kept_keys;
 }
 

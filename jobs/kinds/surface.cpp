@@ -111,7 +111,9 @@ std::string in_words(const kernels::HoleCounts& holes) {
          (left.empty() ? "" : " (left: " + left + ")");
 }
 
+/// Returns in words what was filled and removed, or an empty text if nothing was prepared.
 std::string in_words(const PreparationResult& preparation) {
+  if (preparation == PreparationResult{}) return "";
   std::string text = preparation.holes.loops > 0 ? in_words(preparation.holes) : "";
   if (preparation.removed_vertices > 0) {
     char distance[64];
@@ -226,12 +228,9 @@ class SurfaceKind final : public TypedJobKind<SurfaceJobData, SurfaceJobResult> 
                      {"preparation", json_of(made.preparation, wanted)},
                      {"vanished", made.vanished},
                      {"remeshing", json_of(made.remeshed)}};
-    if (made.repairs != kernels::SurfaceRepairs{})
-      report.lines.emplace_back("repaired", in_words(made.repairs));
-    if (made.preparation != PreparationResult{})
-      report.lines.emplace_back("prepared", in_words(made.preparation));
-    if (std::string words = evolution_in_words(made); !words.empty())
-      report.lines.emplace_back("evolved", std::move(words));
+    report.lines = {{"repaired", in_words(made.repairs)},
+                    {"prepared", in_words(made.preparation)},
+                    {"evolved", evolution_in_words(made)}};
     return report;
   }
 
@@ -247,8 +246,7 @@ class SurfaceKind final : public TypedJobKind<SurfaceJobData, SurfaceJobResult> 
                            .plural = "scans",
                            .kill_remedy = " or leave the scan out",
                            .memory_remedy = ", or decimate the scan",
-                           .stands_for_scan = true,
-                           .headings = {"repaired", "prepared", "evolved"}};
+                           .stands_for_scan = true};
 };
 
 }  // namespace

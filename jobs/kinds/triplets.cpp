@@ -1,7 +1,6 @@
 #include "jobs/kinds/triplets.hpp"
 
 #include "io/dataset/dataset.hpp"
-#include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
 #include "io/library/triplet_run.hpp"
 #include "jobs/archive/scan_size.hpp"
@@ -43,9 +42,7 @@ class TripletsKind final : public TypedJobKind<TripletsJobData, TripletsJobResul
   bool resolve_inputs(Job& job, OutputKeys&) const override {
     job.key.clear();
     std::error_code ignored;
-    if (!fs::exists(job.input, ignored))
-      throw io::Error(job.output, "", "there is no dataset to make it of",
-                      "see why the jobs before it failed, and run again");
+    if (!fs::exists(job.input, ignored)) throw missing_input(job.output, "dataset");
     job.key = triplets_key(job.name, io::read_origin(job.input).job_key, data(job).parameters);
     return is_complete(job);
   }

@@ -51,6 +51,11 @@ bool JobKind::remember(const Job&, DigestCache&) const {
 
 void JobKind::clean_up(const Job&) const {}
 
+io::Error missing_input(const std::filesystem::path& output, const std::string& input) {
+  return {output, "", "there is no " + input + " to make it of",
+          "see why the jobs before it failed, and run again"};
+}
+
 const JobKind* JobKinds::find(std::string_view name) const {
   for (const JobKind* kind : kinds_)
     if (kind->words().kind == name) return kind;

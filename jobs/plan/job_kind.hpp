@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/run_context.hpp"
+#include "io/files/error.hpp"
 #include "jobs/archive/digest_cache.hpp"
 #include "jobs/archive/estimates.hpp"
 #include "jobs/archive/journal.hpp"
@@ -33,7 +34,6 @@ struct JobWords {
   std::string memory_remedy = {};  ///< ", or decimate the scan": follows "give more memory".
   bool stands_for_scan = false;    ///< Users know the job by its name alone.
   bool merges_files = false;       ///< The job makes one file of many.
-  std::vector<std::string> headings = {};  ///< Headings of its reports, in their order.
 };
 
 /// The inputs of an estimate.
@@ -56,11 +56,17 @@ struct ExternalFile {
   bool is_readable = true;
 };
 
+/// One line of the report about a job. It is printed as "<heading>: <name of the job>: <text>".
+struct ReportLine {
+  std::string heading;  ///< "repaired"
+  std::string text;     ///< If it is empty, the line is left out.
+};
+
 /// The report of a run about one job that is done.
 struct JobReport {
   std::vector<std::pair<std::string, nlohmann::json>> fields;  ///< Members of its JSON object.
-  /// Headings and texts, at most one text for each heading.
-  std::vector<std::pair<std::string, std::string>> lines;
+  /// The first lines of all jobs of a kind are printed first, then their second lines, and so on.
+  std::vector<ReportLine> lines;
 };
 
 /// The report at the end of a run about a job, whether it is done or not.
@@ -141,6 +147,10 @@ class JobKind {
   /// Removes what nothing needs once the output is made.
   virtual void clean_up(const Job& job) const;
 };
+
+/// Returns the error that JobKind::resolve_inputs throws if `output` has nothing to be made of.
+/// `input` names what is missing: "dataset".
+io::Error missing_input(const std::filesystem::path& output, const std::string& input);
 
 /// The kinds of jobs that a process can do.
 class JobKinds {

@@ -341,7 +341,9 @@ class StopTest(RecoveryTest):
     def test_a_time_that_is_none(self):
         for arguments in (("--until", "25:00"), ("--until", "6:60"), ("--until", "noon"),
                           ("--until", "06:00pm"), ("--until", "-1:00"), ("--time-limit", "long"),
-                          ("--timeout", "3 weeks"), ("--retries", "-1"), ("--memory", "much")):
+                          ("--timeout", "3 weeks"), ("--timeout", "-1"),
+                          ("--time-limit", "-8h"), ("--retries", "-1"), ("--memory", "much"),
+                          ("--memory", "-1"), ("--memory-per-job", "-2G")):
             with self.subTest(arguments=arguments):
                 process = self.semigeo("run", self.scans, "--output", self.archive, *arguments,
                                        code=2)

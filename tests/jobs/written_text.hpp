@@ -54,7 +54,9 @@ class TextKind final : public jobs::TypedJobKind<TextJobData, TextJobResult> {
   }
 
   jobs::JobReport report(const jobs::Job&, const std::any& value) const override {
-    return {.fields = {{"letters", result(value)->letters}}, .lines = {}};
+    const std::string letters = std::to_string(result(value)->letters);
+    return {.fields = {{"letters", result(value)->letters}},
+            .lines = {{"written", letters + " letters"}, {"noted", ""}, {"closed", "the book"}}};
   }
 
  private:

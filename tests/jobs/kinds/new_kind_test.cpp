@@ -96,6 +96,17 @@ TEST_F(NewKindTest, RunsInAChildAndIsJournalled) {
   EXPECT_EQ(states(run()), (std::vector{kUpToDate, kUpToDate}));
 }
 
+TEST_F(NewKindTest, PrintsEveryLineOfItsReports) {
+  const RunResult result = run();
+  testing::internal::CaptureStdout();
+  cli::print_text(result);
+  const std::string text = testing::internal::GetCapturedStdout();
+  EXPECT_TRUE(
+      text.starts_with("written: one: 5 letters\nwritten: two: 6 letters\n"
+                       "closed: one: the book\nclosed: two: the book\n2 done"))
+      << text;
+}
+
 TEST_F(NewKindTest, ThatFailsSaysWhy) {
   second_ = "fail";
   const RunResult result = run();

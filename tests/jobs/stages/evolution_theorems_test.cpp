@@ -185,7 +185,7 @@ FlowError flow_error(const shapes::AnalyticMesh& mesh, const EvolutionOptions& o
 TEST(EvolutionTheoremsTest, DisplacementTendsToMeanCurvatureFlow) {
   for (const auto& surface : shapes::analytic_surfaces()) {
     if (surface.open()) continue;
-    for (const auto tessellation : {shapes::Tessellation::even, shapes::Tessellation::uneven}) {
+    for (const auto tessellation : {shapes::Tessellation::kEven, shapes::Tessellation::kUneven}) {
       SCOPED_TRACE(surface.name + ", " + name_of(tessellation));
       const EvolutionOptions options{.rescale = Rescale::kNone, .remesh = false};
       const FlowError coarse = flow_error(tessellate(surface, tessellation, 642), options);
@@ -204,7 +204,7 @@ TEST(EvolutionTheoremsTest, DisplacementTendsToMeanCurvatureFlow) {
 TEST(EvolutionTheoremsTest, OnFlatFacesDisplacementTendsToTheFlowOverLongerSteps) {
   const auto& sphere = shapes::analytic_surfaces()[0];
   ASSERT_EQ(sphere.name, "sphere");
-  const auto mesh = tessellate(sphere, shapes::Tessellation::even, 40962);
+  const auto mesh = tessellate(sphere, shapes::Tessellation::kEven, 40962);
   double errors[3];
   for (int i = 0; i < 3; ++i)
     errors[i] = flow_error(mesh, {.curved = false,
