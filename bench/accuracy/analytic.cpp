@@ -54,8 +54,8 @@ std::vector<Case> measure(const AnalyticOptions& options) {
       for (const int vertices : options.vertices)
         for (const shapes::AnalyticSurface& shape : shapes::analytic_surfaces()) {
           if (std::ranges::count(options.shapes, shape.name) == 0) continue;
-          for (const auto kind : {shapes::Tessellation::even, shapes::Tessellation::uneven,
-                                  shapes::Tessellation::ragged, shapes::Tessellation::needles}) {
+          for (const auto kind : {shapes::Tessellation::kEven, shapes::Tessellation::kUneven,
+                                  shapes::Tessellation::kRagged, shapes::Tessellation::kNeedles}) {
             const jobs::EvolutionOptions evolution{
                 .curved = surface == "curved",
                 .coordinates = coordinates_of(coordinates),

@@ -54,8 +54,8 @@ std::vector<int> rim_distances(const kernels::Surface& surface) {
 
 /// -1: none.
 int zone_of(int distance) {
-  if (distance >= kInside) return static_cast<int>(Zone::inside);
-  return distance <= 2 ? static_cast<int>(Zone::ring_0) + distance : -1;
+  if (distance >= kInside) return static_cast<int>(Zone::kInside);
+  return distance <= 2 ? static_cast<int>(Zone::kRing0) + distance : -1;
 }
 
 double relative_gaussian(double found, const shapes::SurfacePoint& truth) {

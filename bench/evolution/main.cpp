@@ -95,7 +95,7 @@ std::vector<Source> sources(const Options& options) {
       if (surface.name == name)
         result.push_back({name, [&surface, &options] {
                             shapes::AnalyticMesh made = shapes::tessellate(
-                                surface, shapes::Tessellation::even, options.vertices);
+                                surface, shapes::Tessellation::kEven, options.vertices);
                             if (options.noise > 0)
                               shapes::add_normal_noise(
                                   made, options.noise * shapes::mean_edge_length(made.mesh), 1);

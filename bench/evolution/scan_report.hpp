@@ -8,30 +8,33 @@
 
 namespace semigeo::evolution {
 
-/// What one scan took from its file to its last level.
+/// Tells how long each step took from the file of a scan to its last level.
 struct ScanReport {
   std::string name;
-  std::int64_t scanned_vertices = 0;  ///< after repair, before holes are filled and decimation
+  std::int64_t scanned_vertices = 0;  ///< Number of vertices after repair, before preparation.
   Seconds reading;
   Seconds repair;
   Seconds filling;
   Seconds decimation;
   Seconds ordering;
-  Seconds normals;  ///< of level 0, and all else before the first patch
+  Seconds normals;  ///< Time for the normals of level 0 and all else before patches.
   jobs::PreparationResult preparation;
   std::vector<LevelReport> levels;
 
-  /// Of all levels together.
+  /// Returns the time for smoothing all levels.
   Seconds smoothing() const;
+  /// Returns the time for remeshing all levels.
   Seconds remeshing() const;
 };
 
-/// A table on stdout, with CPU seconds.
+/// Prints a table of the levels on stdout, with CPU seconds.
 void print(const ScanReport& scan);
-/// One row a level.
+/// Returns a CSV file with one row for each level of each scan.
 std::string csv(const std::vector<ScanReport>& scans);
+/// Returns the same as JSON, with the times of each scan.
 std::string json(const std::vector<ScanReport>& scans);
-/// Area and volume, as shares of level 0's, and parts, over the levels.
+/// Returns an SVG document with the area and the volume of each level, as shares of those of
+/// level 0, and the number of parts.
 std::string plots(const std::vector<ScanReport>& scans);
 
 }  // namespace semigeo::evolution

@@ -14,32 +14,36 @@
 
 namespace semigeo::recognition {
 
-/// Kinds that scene_kinds() does not have.
-inline constexpr char kRangeScan[] = "G";       ///< range_scan.hpp
-inline constexpr char kFalsePositives[] = "X";  ///< A to E with a library without the object
+// These kinds of experiments are not among scene_kinds().
+inline constexpr char kRangeScan[] = "G";       ///< The real scene of range_scan.hpp.
+inline constexpr char kFalsePositives[] = "X";  ///< Scenes A to E, whose object no library has.
 
+/// Says which experiments are made, and how.
 struct ExperimentOptions {
-  std::vector<std::string> kinds;
-  std::uint64_t first_seed = 1;
-  std::uint64_t seeds = 1;  ///< scenes of each kind and object
-  std::int64_t model_vertices = 5000;
-  std::int64_t scan_vertices = 20000;  ///< of G's scene
-  std::filesystem::path scan_folder;   ///< with G's files
+  std::vector<std::string> kinds;      ///< Names of the kinds of scenes.
+  std::uint64_t first_seed = 1;        ///< Seed of the first scene of each kind and object.
+  std::uint64_t seeds = 1;             ///< Number of scenes of each kind and object.
+  std::int64_t model_vertices = 5000;  ///< Number of vertices of the model of kind G.
+  std::int64_t scan_vertices = 20000;  ///< Number of vertices of the scene of kind G.
+  std::filesystem::path scan_folder;   ///< Folder with the files of kind G.
   jobs::RecognitionParameters parameters;
   jobs::RecognitionOptions recognition;
 };
 
-/// A method with a library that it keeps a reference to.
+/// Returns a recogniser for a library. The recogniser keeps a reference to the library.
 using Method = std::function<Recogniser(const io::HashLibrary& library)>;
 
-/// All scenes, kind after kind; each is told as soon as it is done. Libraries are written into
-/// `folder`. G is passed over if its files are not there. Throws io::Error, std::runtime_error.
+/// Recognises all scenes, kind after kind, and returns what became of them. `told` is called after
+/// each scene. Libraries are written into `folder`. Kind G is left out if its files are missing.
+/// Throws io::Error if a file cannot be read or written, and std::runtime_error if OpenMesh cannot
+/// hold a model.
 std::vector<Outcome> run_experiments(BenchModels& models, const Method& method,
                                      const ExperimentOptions& options,
                                      const std::filesystem::path& folder,
                                      const std::function<void(const Outcome&)>& told,
                                      const engine::RunContext& context);
 
+/// Returns the names of the models of a library, in its order.
 std::vector<std::string> model_names(const io::HashLibrary& library);
 
 }  // namespace semigeo::recognition

@@ -10,14 +10,15 @@
 
 namespace semigeo::recognition {
 
-/// A real scene, seen from one side, with a model in it whose pose others have measured.
+/// Holds a real scene that was scanned from one side, and a model whose pose in it is known.
 struct RangeScan {
   std::unique_ptr<BenchModel> model;
-  Scene scene;  ///< of kind G; its object's index is not set
+  Scene scene;  ///< Its kind is G. The index of its object is not set.
 };
 
-/// The dinosaur of the UWA data set in scene rs1, from `folder`; nothing if it is not there. Model
-/// and scene are decimated to so many vertices (0: as they are). Throws io::Error.
+/// Reads the dinosaur of the UWA data set and the scene rs1 from `folder`. Returns nothing if they
+/// are not there. Model and scene are decimated to these numbers of vertices (0: no decimation).
+/// Throws io::Error if a file cannot be read.
 std::optional<RangeScan> read_range_scan(const std::filesystem::path& folder,
                                          std::int64_t model_vertices, std::int64_t scene_vertices);
 

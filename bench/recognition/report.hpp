@@ -8,16 +8,17 @@
 
 namespace semigeo::recognition {
 
-/// Kinds of scenes whose object is not in the library have this before their name.
+/// The prefix of kinds of scenes whose object is not in the library.
 inline constexpr char kAbsent[] = "X-";
 
-/// How often what is there is recognised, kind by kind; scores; seconds.
+/// Prints on stdout, kind by kind, how many of the objects are recognised, the scores, and the
+/// times.
 void print(std::span<const Outcome> outcomes);
 
-/// A line for each scene in which something was missed or wrong.
+/// Prints on stdout a line for each scene in which an object was missed or wrong.
 void print_misses(std::span<const Outcome> outcomes);
 
-/// Everything, as JSON; `arguments` is the command line.
+/// Returns all outcomes as JSON. `arguments` is the command line, `models` the names of all models.
 std::string json(std::span<const Outcome> outcomes, const std::vector<std::string>& arguments,
                  const std::vector<std::string>& models);
 

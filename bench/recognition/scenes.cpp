@@ -45,7 +45,7 @@ constexpr std::array kThesisPlacements = {
 };
 
 /// What chance decides; each has numbers of its own.
-enum class Chance : std::uint32_t { others, placement, change, similarity };
+enum class Chance : std::uint32_t { kOthers, kPlacement, kChange, kSimilarity };
 
 /// Factor between the sizes of objects in one scene, either way.
 constexpr double kSizeSpread = 1.3;
@@ -133,12 +133,12 @@ Scene make_scene(const SceneKind& kind, ModelSpan models, std::size_t first, std
   const auto numbers = [&](Chance chance) {
     return bench::random(seed, static_cast<std::uint32_t>(chance), name);
   };
-  bench::Random others = numbers(Chance::others);
-  bench::Random placement = numbers(Chance::placement);
+  bench::Random others = numbers(Chance::kOthers);
+  bench::Random placement = numbers(Chance::kPlacement);
   const std::vector<std::size_t> objects = chosen(kind, models.size(), first, others);
   for (const std::size_t index : objects) {
     const BenchModel& model = *models[index];
-    bench::Random change = numbers(Chance::change);
+    bench::Random change = numbers(Chance::kChange);
     change.discard(scene.objects.size());
     TriangleMesh mesh = changed(kind, model.mesh, change);
     PlacedObject object{.model = index, .pose = {}};
@@ -152,7 +152,7 @@ Scene make_scene(const SceneKind& kind, ModelSpan models, std::size_t first, std
     bench::append(scene.mesh, mesh);
     scene.objects.push_back(object);
   }
-  bench::Random similarity = numbers(Chance::similarity);
+  bench::Random similarity = numbers(Chance::kSimilarity);
   const Similarity whole = bench::random_similarity(
       kernels::bounding_box(scene.mesh.points).diagonal().norm(), similarity);
   bench::move(scene.mesh, whole);

@@ -13,53 +13,56 @@
 
 namespace semigeo::recognition {
 
-/// What is done to the objects of a scene, in this order, before they are put together and the
-/// whole is rotated, scaled and moved.
+/// Says what is done to the objects of a scene. The changes are made in the order of the fields.
+/// Then the objects are put together, and the whole is rotated, scaled and moved.
 struct SceneKind {
   const char* name;
-  const char* says;
-  int objects = 1;           ///< different ones
-  int copies = 1;            ///< of each, at most; from two on, two or so many
-  double vertices_left = 1;  ///< share that quadric decimation leaves
-  double removed = 0;        ///< share of the vertices, a ball
-  double noise = 0;          ///< sigma a coordinate, in mean edge lengths of what is there then
+  const char* says;          ///< Description of the kind, for tables.
+  int objects = 1;           ///< Number of different objects.
+  int copies = 1;            ///< Most copies of an object: 2 to so many, or just one.
+  double vertices_left = 1;  ///< Share of the vertices that quadric decimation leaves.
+  double removed = 0;        ///< Share of the vertices that are removed, in a ball.
+  double noise = 0;  ///< Sigma of the noise in each coordinate, in mean edge lengths at that time.
 };
-/// A to F, H and the hard ones.
+/// Returns the kinds A to F, H and the hard ones.
 std::span<const SceneKind> scene_kinds();
-/// Nothing if there is no such kind.
+/// Returns the kind of this name, or null.
 const SceneKind* scene_kind(const std::string& name);
 
-/// An object of a scene, and where it is.
+/// Describes an object of a scene.
 struct PlacedObject {
-  std::size_t model = 0;
-  kernels::Similarity pose;  ///< model to scene, in coordinates of the files
+  std::size_t model = 0;     ///< Index of the model.
+  kernels::Similarity pose;  ///< Leads from the model to the scene, in coordinates of the files.
 };
 
+/// Holds a scene whose objects are known.
 struct Scene {
-  std::string kind;
-  std::string name;  ///< of its first object
-  std::uint64_t seed = 0;
+  std::string kind;        ///< Name of its kind.
+  std::string name;        ///< Name of its first object.
+  std::uint64_t seed = 0;  ///< Seed of all its random choices.
   kernels::TriangleMesh mesh;
   std::vector<PlacedObject> objects;
 };
 
-/// One scene: the object `first` and, where the kind wants more, others that the seed picks, one
-/// touching the next. All chance comes from kind, seed and the name of the object. Throws
-/// std::runtime_error if OpenMesh cannot hold a model, or there are fewer models than objects.
+/// Makes a scene of the model `first` (an index) and of others that are chosen at random, if the
+/// kind has more objects. Each object touches the one before. The same kind, seed and name of the
+/// object give the same scene. Throws std::runtime_error if OpenMesh cannot hold a model, or if
+/// there are fewer models than objects.
 Scene make_scene(const SceneKind& kind, ModelSpan models, std::size_t first, std::uint64_t seed);
 
-/// The mesh after what the kind does to an object.
+/// Returns the mesh of an object after the changes of the kind.
 kernels::TriangleMesh changed(const SceneKind& kind, const kernels::TriangleMesh& mesh,
                               const bench::Random& random);
 
-/// The table of the thesis: scale and degrees about x, y and z of its twelve scenes. Source: 6.1.
+/// Says how an object was placed in a scene of the thesis.
 struct ThesisPlacement {
   const char* object;
   double scale;
-  double x, y, z;
+  double x, y, z;  ///< Angles about the axes, in degrees.
 };
+/// Returns the placements of the twelve scenes. Source: thesis, table 6.1.
 std::span<const ThesisPlacement> thesis_placements();
-/// R = Rz Ry Rx. Source: 4.6.
+/// Returns the transform of a placement, with the rotation R = Rz Ry Rx. Source: thesis 4.6.
 kernels::Similarity similarity_of(const ThesisPlacement& placement);
 
 }  // namespace semigeo::recognition

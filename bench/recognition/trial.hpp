@@ -13,24 +13,25 @@
 
 namespace semigeo::recognition {
 
-/// What recognises: the scene in, what was found out, with models by name.
+/// Recognises models in a scene, and returns what was found.
 using Recogniser = std::function<jobs::Recognition(const kernels::RecognitionModel& scene)>;
 
+/// Holds a time in seconds.
 struct Seconds {
-  double wall = 0;
-  double cpu = 0;  ///< of all threads
+  double wall = 0;  ///< Time on the clock.
+  double cpu = 0;   ///< CPU time of all threads together.
 };
 
-/// What became of an object of a scene.
+/// Tells whether an object of a scene was recognised.
 struct ObjectOutcome {
-  std::string model;
-  int rank = 0;           ///< in the ranking, from 1; 0: not there
-  double score = 0;       ///< there
-  PoseError ranked;       ///< of the pose there
-  bool reported = false;  ///< among the objects, with the right pose
+  std::string model;      ///< Name of the object's model.
+  int rank = 0;           ///< Place of the model in the ranking, from 1; 0: it is not there.
+  double score = 0;       ///< Score of the model in the ranking.
+  PoseError ranked;       ///< Error of the pose in the ranking.
+  bool reported = false;  ///< The model is among the objects found, with the right pose.
 };
 
-/// What became of a scene.
+/// Tells what was recognised in a scene.
 struct Outcome {
   std::string kind;
   std::string scene;
@@ -38,31 +39,31 @@ struct Outcome {
   std::int64_t vertices = 0;
   std::int64_t features = 0;
   std::vector<ObjectOutcome> objects;
-  std::string first;       ///< that the ranking begins with; empty: it is empty
-  std::string best_wrong;  ///< of the ranking
-  double best_wrong_score = 0;
-  int false_objects = 0;   ///< reported, but not there, or not so
-  std::string false_best;  ///< the best of them
-  double false_score = 0;
+  std::string first;            ///< First model of the ranking; empty if the ranking is.
+  std::string best_wrong;       ///< Best model of the ranking that is not in the scene.
+  double best_wrong_score = 0;  ///< Score of that model.
+  int false_objects = 0;   ///< Number of objects found that are not there, or not in that pose.
+  std::string false_best;  ///< Model of the false object with the best score.
+  double false_score = 0;  ///< Score of that object.
   std::int64_t scene_triplets = 0;
   std::int64_t matches = 0;
-  Seconds scale_space;  ///< features and samples of the scene
-  Seconds search;       ///< the rest
+  Seconds scale_space;  ///< Time for the features and samples of the scene.
+  Seconds search;       ///< Time for everything after that.
 
-  /// The ranking begins with the objects of the scene.
+  /// Returns whether the ranking begins with the objects of the scene.
   bool named() const;
-  /// And their poses are right; of several copies one is enough.
+  /// Returns whether, besides, their poses are right. One copy of an object is enough.
   bool posed() const;
-  /// All are among the objects, with the right poses.
+  /// Returns whether all objects of the scene are among the objects found, with the right poses.
   bool reported() const;
 };
 
-/// Looks at a scene. `names` are those of the library's models.
+/// Recognises a scene and judges the result. `names` are the names of the library's models.
 Outcome try_scene(const Scene& scene, ModelSpan models, const std::vector<std::string>& names,
                   const Recogniser& recogniser, const jobs::RecognitionParameters& parameters,
                   const engine::RunContext& context);
 
-/// Compares what was found with what is there; no clocks, no vertices.
+/// Judges what was found in a scene. Times and the number of vertices are not set.
 Outcome judged(const Scene& scene, ModelSpan models, const std::vector<std::string>& names,
                const jobs::Recognition& found);
 

@@ -20,17 +20,17 @@ using kernels::TriangleMesh;
 constexpr std::array kCases = {
     Case{.name = "identity", .moved = false},
     Case{.name = "rotated"},
-    Case{.name = "decimated", .digitising = Digitising::decimated},
-    Case{.name = "decimated+noise", .digitising = Digitising::decimated, .noise = true},
-    Case{.name = "resampled", .digitising = Digitising::resampled},
-    Case{.name = "resampled+noise", .digitising = Digitising::resampled, .noise = true},
+    Case{.name = "decimated", .digitising = Digitising::kDecimated},
+    Case{.name = "decimated+noise", .digitising = Digitising::kDecimated, .noise = true},
+    Case{.name = "resampled", .digitising = Digitising::kResampled},
+    Case{.name = "resampled+noise", .digitising = Digitising::kResampled, .noise = true},
     Case{.name = "noise", .noise = true},
     Case{.name = "cut", .cut = true},
-    Case{.name = "decimated+cut", .digitising = Digitising::decimated, .cut = true},
+    Case{.name = "decimated+cut", .digitising = Digitising::kDecimated, .cut = true},
 };
 
 /// What chance decides; each has numbers of its own.
-enum class Chance : std::uint32_t { cut, noise, similarity };
+enum class Chance : std::uint32_t { kCut, kNoise, kSimilarity };
 
 bench::Random random(std::uint64_t seed, Chance chance, std::string_view name) {
   return bench::random(seed, static_cast<std::uint32_t>(chance), name);
@@ -45,7 +45,7 @@ Eigen::Hyperplane<double, 3> random_cut(const kernels::Surface& original, std::u
     for (const auto& p : original.points) values.push_back(p[c]);
     middle[c] = bench::median(values);
   }
-  bench::Random numbers = random(seed, Chance::cut, "");
+  bench::Random numbers = random(seed, Chance::kCut, "");
   return {bench::normal_vector(numbers).normalized(), middle};
 }
 
@@ -69,15 +69,15 @@ MeshChanger::MeshChanger(const kernels::Surface& original, const ChangeOptions& 
 const TriangleMesh& MeshChanger::digitised(Digitising digitising) {
   const auto vertices = static_cast<double>(original_.vertex_count());
   switch (digitising) {
-    case Digitising::decimated:
+    case Digitising::kDecimated:
       if (!decimated_)
         decimated_ =
             bench::quadric_decimated(as_is_, std::llround(options_.vertices_left * vertices));
       return *decimated_;
-    case Digitising::resampled:
+    case Digitising::kResampled:
       if (!resampled_) resampled_ = bench::isotropic_remeshed(original_, original_.vertex_count());
       return *resampled_;
-    case Digitising::as_is:
+    case Digitising::kAsIs:
       break;
   }
   return as_is_;
@@ -92,9 +92,9 @@ ChangedMesh MeshChanger::changed(const Case& change) {
   result.area = bench::area(result.mesh);
   if (change.noise)
     bench::add_noise(result.mesh, options_.noise * bench::mean_edge_length(result.mesh),
-                     random(options_.seed, Chance::noise, change.name));
+                     random(options_.seed, Chance::kNoise, change.name));
   if (change.moved) {
-    bench::Random numbers = random(options_.seed, Chance::similarity, change.name);
+    bench::Random numbers = random(options_.seed, Chance::kSimilarity, change.name);
     result.similarity =
         bench::random_similarity(kernels::bounding_box(as_is_.points).diagonal().norm(), numbers);
     bench::move(result.mesh, result.similarity);

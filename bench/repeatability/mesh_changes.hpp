@@ -12,44 +12,50 @@
 
 namespace semigeo::repeatability {
 
+/// The meshes that can be made of one surface.
 enum class Digitising {
-  as_is,
-  decimated,  ///< quadric decimation: fewer vertices where the surface is flat
-  resampled   ///< a new mesh of equal edges and about as many vertices
+  kAsIs,       ///< The mesh itself.
+  kDecimated,  ///< Quadric decimation leaves fewer vertices where the surface is flat.
+  kResampled   ///< A new mesh has equal edges and about as many vertices.
 };
 
-/// What is done to a mesh before its features are looked for again, in this order.
+/// Says what is done to a mesh before its features are looked for again. The changes are made in
+/// the order of the fields.
 struct Case {
   const char* name;
-  Digitising digitising = Digitising::as_is;
-  bool cut = false;    ///< half of it
-  bool noise = false;  ///< in every coordinate
-  bool moved = true;   ///< rotated, scaled and shifted
+  Digitising digitising = Digitising::kAsIs;
+  bool cut = false;    ///< Half of the mesh is cut away.
+  bool noise = false;  ///< Noise is added to every coordinate.
+  bool moved = true;   ///< The mesh is rotated, scaled and shifted.
 };
+/// Returns all cases.
 std::span<const Case> all_cases();
 
+/// Says how much a mesh is changed.
 struct ChangeOptions {
-  double vertices_left = 0.6;  ///< share that decimation leaves
-  double noise = 0.15;  ///< sigma a coordinate, in mean edge lengths of the mesh as it is then
-  std::uint64_t seed = 1;
+  double vertices_left = 0.6;  ///< Share of the vertices that decimation leaves.
+  double noise = 0.15;     ///< Sigma of the noise in each coordinate, in mean edge lengths then.
+  std::uint64_t seed = 1;  ///< Seed of all random choices.
 };
 
+/// Holds a mesh after its changes.
 struct ChangedMesh {
   kernels::TriangleMesh mesh;
-  kernels::Similarity similarity;  ///< from the original to `mesh`
-  double area = 0;                 ///< before noise, in the original's units
-  /// In the original's frame: what lies on its negative side is cut away.
+  kernels::Similarity similarity;  ///< Leads from the original to `mesh`.
+  double area = 0;                 ///< Area before noise was added, in the original's units.
+  /// The plane of the cut, in the original's frame. Its negative side is cut away.
   std::optional<Eigen::Hyperplane<double, 3>> cut;
 };
 
-/// Changes one surface in many ways. All chance comes from the seed, so that results repeat, and
-/// every mesh meets the same chances; cuts are the same in every case.
+/// Changes one surface in many ways. The same seed gives the same changes, and the plane of the cut
+/// is the same in every case.
 class MeshChanger {
  public:
-  /// Keeps a reference to the original.
+  /// Begins with a surface, and keeps a reference to it.
   MeshChanger(const kernels::Surface& original, const ChangeOptions& options);
 
-  /// Throws std::runtime_error if OpenMesh cannot hold the surface.
+  /// Returns the mesh after the changes of a case. Throws std::runtime_error if OpenMesh cannot
+  /// hold the surface.
   ChangedMesh changed(const Case& change);
 
  private:

@@ -10,33 +10,36 @@
 
 namespace semigeo::repeatability {
 
-/// How the features of one kind, on one level, found with one radius, come back. Shares are NaN
-/// where there are no features.
+/// Tells how many features of one kind, level and radius reappear on a changed mesh. A feature
+/// reappears if the changed mesh has one of the same kind and sign within the tolerance. Shares are
+/// NaN if there are no features.
 struct Repeats {
-  std::int64_t features = 0;   ///< of the original that count
-  std::int64_t found = 0;      ///< of the same kind on the changed mesh
-  double share = 0;            ///< that come back: same sign, within the tolerance
-  double chance = 0;           ///< what as many random points would reach
-  double share_prominent = 0;  ///< of the more prominent half of the features
-  double share_twice = 0;      ///< within twice the tolerance
-  double share_scale = 0;      ///< within the level's scale
-  double median_distance = 0;  ///< to the nearest of the same kind and sign, in tolerances
-  double median_miss = 0;      ///< the same, of those that do not come back
+  std::int64_t features = 0;   ///< Number of features of the original that count.
+  std::int64_t found = 0;      ///< Number of features of the kind on the changed mesh.
+  double share = 0;            ///< Share of the features that reappear.
+  double chance = 0;           ///< Share that would reappear among as many random points.
+  double share_prominent = 0;  ///< Share of the more prominent half that reappear.
+  double share_twice = 0;      ///< Share that reappear within twice the tolerance.
+  double share_scale = 0;      ///< Share that reappear within the scale of the level.
+  double median_distance = 0;  ///< Median distance to the nearest such feature, in tolerances.
+  double median_miss = 0;      ///< Median distance of those that do not reappear, in tolerances.
 };
 
+/// Says how features are compared. Lengths are in the original's units.
 struct RepeatOptions {
-  double tolerance = 0;  ///< original's units
-  double area = 0;       ///< of the changed surface
-  double scale = 0;      ///< of the original's level
-  /// Which features of the original count, by their position.
+  double tolerance = 0;  ///< Largest distance at which a feature reappears.
+  double area = 0;       ///< Area of the changed surface.
+  double scale = 0;      ///< Scale of the original's level.
+  /// Returns whether a feature of the original at this position counts.
   std::function<bool(const Eigen::Vector3d&)> counts;
 };
 
-/// Compares features of one kind. Cost: the product of their numbers, at a few ns.
+/// Compares the features of one kind on two meshes. The cost is a few ns for each pair of features.
 Repeats repeats(std::span<const PlacedFeature> original, std::span<const PlacedFeature> changed,
                 const RepeatOptions& options);
 
-/// The level whose scale is nearest in ratio; there must be one.
+/// Returns the index of the level whose scale has the ratio to `scale` that is nearest to 1. There
+/// must be at least one level.
 std::size_t nearest_level(std::span<const ScaleLevel> levels, double scale);
 
 }  // namespace semigeo::repeatability

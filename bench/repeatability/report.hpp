@@ -9,29 +9,30 @@
 
 namespace semigeo::repeatability {
 
-/// One mesh, one change, one kind, level and radius.
+/// Describes the result for one mesh, change, kind of features, level and radius.
 struct Row {
-  std::string mesh;
-  std::string change;  ///< name of the case
+  std::string mesh;    ///< Name of the mesh.
+  std::string change;  ///< Name of the case.
   kernels::FeatureKind kind = kernels::FeatureKind::kGaussian;
-  int level = 0;                ///< of the original
-  double radius = 0;            ///< in scales; 0 for torsion, which has none
-  double mean_edge_length = 0;  ///< of the original
-  double scale = 0;             ///< of that level
-  int changed_level = 0;
-  double changed_scale = 0;  ///< of the level compared, in the original's units
+  int level = 0;                ///< Level of the original.
+  double radius = 0;            ///< Radius in scales; 0 for torsion, which has none.
+  double mean_edge_length = 0;  ///< Mean edge length of the original.
+  double scale = 0;             ///< Scale of the level of the original.
+  int changed_level = 0;        ///< Level of the changed mesh that it is compared with.
+  double changed_scale = 0;     ///< Scale of that level, in the original's units.
   Repeats repeats;
 };
 
-/// Whether maxima of this kind are compared within a radius.
+/// Returns whether maxima of this kind are compared within a radius.
 constexpr bool has_radius(kernels::FeatureKind kind) {
   return kind == kernels::FeatureKind::kGaussian || kind == kernels::FeatureKind::kMean;
 }
 
-/// With a line of headings; quantities in the order of the members.
+/// Returns a CSV file with a line of headings. Columns have the order of the members.
 std::string csv(std::span<const Row> rows);
 
-/// A table a case on stdout, and in the end what comes back best: median over the meshes.
+/// Prints a table for each case on stdout, and last the kind, level and radius whose features
+/// reappear best, by the median over the meshes.
 void print(std::span<const Row> rows);
 
 }  // namespace semigeo::repeatability

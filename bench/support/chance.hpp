@@ -9,21 +9,23 @@
 
 namespace semigeo::bench {
 
+/// The generator of all random numbers.
 using Random = std::mt19937_64;
 
-/// Numbers of their own for each seed, purpose and name, the same on every machine.
+/// Returns a generator for a seed, a purpose and a name. The same three give the same numbers on
+/// every machine, and others give other numbers.
 Random random(std::uint64_t seed, std::uint32_t purpose, std::string_view name);
 
-/// Three independent normal numbers; normalised, any direction alike.
+/// Returns a vector of three independent normal numbers. Its direction is uniformly distributed.
 Eigen::Vector3d normal_vector(Random& random);
 
-/// Any rotation alike.
+/// Returns a uniformly distributed rotation.
 Eigen::Matrix3d random_rotation(Random& random);
 
-/// Any rotation, a factor between 1/2 and 2, and a shift of about `size`.
+/// Returns a random rotation with a scale between 1/2 and 2 and a translation of about `size`.
 kernels::Similarity random_similarity(double size, Random& random);
 
-/// Where a similarity takes this point from.
+/// Returns the point that a similarity takes to p.
 inline Eigen::Vector3d undo(const kernels::Similarity& similarity, const Eigen::Vector3d& p) {
   return similarity.rotation.transpose() * (p - similarity.translation) / similarity.scale;
 }

@@ -5,7 +5,7 @@
 
 namespace semigeo::bench {
 
-/// Examples, kept as the footer, stand before everything else.
+/// Formats help texts. The examples, which a command has as its footer, are printed first.
 class ExamplesFirst : public CLI::Formatter {
  public:
   std::string make_description(const CLI::App* app) const override {

@@ -7,12 +7,12 @@
 
 namespace semigeo::bench {
 
-/// Lays a new mesh of about so many vertices over a surface, with edges of about the same length
-/// everywhere: long edges are split, short ones collapsed, edges flipped towards six neighbours a
-/// vertex, vertices moved along the surface to the middle of their neighbours and back onto it, ten
-/// times over. What is sharper than an edge is long is cut off, as by a scanner. The number of
-/// vertices is off by a few per cent. Boundaries keep their vertices. Throws std::runtime_error if
-/// OpenMesh cannot hold the surface. Serial; about 0.1 ms a vertex.
+/// Returns a new mesh of a surface whose edges are about equally long. It has `vertices` vertices,
+/// give or take a few per cent. Ten times over, long edges are split, short edges are collapsed,
+/// edges are flipped so that vertices have nearly six neighbours, and vertices are moved to the
+/// centroid of their neighbours and back onto the surface. Details smaller than an edge are lost,
+/// as they are by a scanner. Boundaries keep their vertices. Throws std::runtime_error if OpenMesh
+/// cannot hold the surface. The function is serial and takes about 0.1 ms for each vertex.
 kernels::TriangleMesh isotropic_remeshed(const kernels::Surface& surface, std::int64_t vertices);
 
 }  // namespace semigeo::bench

@@ -6,7 +6,8 @@
 
 namespace semigeo::bench {
 
-/// The value that the share q of all values does not exceed; NaN of none. Reorders them.
+/// Returns the value that the share q of all values does not exceed, or NaN if there are none. It
+/// changes the order of the values.
 inline double quantile(std::vector<double>& values, double q) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   const auto at = values.begin() +
@@ -15,10 +16,12 @@ inline double quantile(std::vector<double>& values, double q) {
   return *at;
 }
 
+/// Returns the median as `quantile` does.
 inline double median(std::vector<double>& values) {
   return quantile(values, 0.5);
 }
 
+/// Returns the mean, or NaN if there are no values.
 inline double mean(const std::vector<double>& values) {
   double sum = 0;
   for (const double value : values) sum += value;

@@ -64,12 +64,12 @@ SurfacePoint enneper_at(const Vector3d& st) {
 
 std::span<const AnalyticSurface> analytic_surfaces() {
   static const std::array<AnalyticSurface, 6> surfaces = {{
-      {"sphere", Domain::sphere, sphere_at},
-      {"ellipsoid", Domain::sphere, ellipsoid_at},
-      {"torus", Domain::torus, torus_at},
-      {"cylinder", Domain::cylinder, cylinder_at},
-      {"saddle", Domain::square, saddle_at},
-      {"enneper", Domain::square, enneper_at},
+      {"sphere", Domain::kSphere, sphere_at},
+      {"ellipsoid", Domain::kSphere, ellipsoid_at},
+      {"torus", Domain::kTorus, torus_at},
+      {"cylinder", Domain::kCylinder, cylinder_at},
+      {"saddle", Domain::kSquare, saddle_at},
+      {"enneper", Domain::kSquare, enneper_at},
   }};
   return surfaces;
 }

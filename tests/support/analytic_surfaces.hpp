@@ -21,10 +21,10 @@ struct SurfacePoint {
 
 /// Where the parameters of a surface live.
 enum class Domain {
-  sphere,    ///< a vector of any length, which stands for its direction
-  torus,     ///< (s, t, 0) with period 1 in both
-  cylinder,  ///< (s, t, 0) with period 1 in s; t in [0, 1]
-  square     ///< (s, t, 0) in [0, 1]^2
+  kSphere,    ///< A vector of any length, which stands for its direction.
+  kTorus,     ///< (s, t, 0) with period 1 in both.
+  kCylinder,  ///< (s, t, 0) with period 1 in s, and t in [0, 1].
+  kSquare     ///< (s, t, 0) in [0, 1]^2.
 };
 
 struct AnalyticSurface {
@@ -32,7 +32,7 @@ struct AnalyticSurface {
   Domain domain;
   SurfacePoint (*at)(const Eigen::Vector3d& parameters);
 
-  bool open() const { return domain == Domain::cylinder || domain == Domain::square; }
+  bool open() const { return domain == Domain::kCylinder || domain == Domain::kSquare; }
 };
 
 /// Sphere, ellipsoid (1, 0.7, 0.5), torus (R = 1, r = 0.4), cylinder, saddle z = (x^2 - y^2) / 2
@@ -40,10 +40,10 @@ struct AnalyticSurface {
 std::span<const AnalyticSurface> analytic_surfaces();
 
 enum class Tessellation {
-  even,    ///< a subdivided icosahedron, or a grid in the parameters
-  uneven,  ///< the same, parameters warped smoothly: edges differ by a factor of about 4
-  ragged,  ///< the same, every vertex moved at random by up to 0.3 edges both ways
-  needles  ///< edges 50 times shorter than others, and vertices with 30 neighbours
+  kEven,    ///< A subdivided icosahedron, or a grid in the parameters.
+  kUneven,  ///< The even mesh, smoothly warped so that edges differ by a factor of about 4.
+  kRagged,  ///< The even mesh, every vertex moved at random by up to 0.3 edges both ways.
+  kNeedles  ///< Edges 50 times shorter than others, and vertices with 30 neighbours.
 };
 
 const char* name_of(Tessellation tessellation);

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 /// Two parameter directions at p, right-handed seen from outside.
 std::pair<Vector3d, Vector3d> directions(Domain domain, const Vector3d& p) {
-  if (domain != Domain::sphere) return {Vector3d::UnitX(), Vector3d::UnitY()};
+  if (domain != Domain::kSphere) return {Vector3d::UnitX(), Vector3d::UnitY()};
   const Vector3d first = p.unitOrthogonal();
   return {first, p.normalized().cross(first)};
 }
@@ -26,7 +26,7 @@ TEST(AnalyticSurfacesTest, CurvatureIsThatOfThePositions) {
   for (const AnalyticSurface& surface : analytic_surfaces())
     for (const Vector3d& p : {Vector3d(0.31, 0.42, 0), Vector3d(0.9, 0.13, 0.2)}) {
       const Vector3d at =
-          surface.domain == Domain::sphere ? p.normalized().eval() : Vector3d(p.x(), p.y(), 0);
+          surface.domain == Domain::kSphere ? p.normalized().eval() : Vector3d(p.x(), p.y(), 0);
       const auto [du, dv] = directions(surface.domain, at);
       const double h = 1e-3;
       const auto r = [&](int i, int j) { return surface.at(at + h * (i * du + j * dv)).position; };
@@ -63,8 +63,8 @@ EdgeLengths edge_lengths(const AnalyticMesh& m) {
 
 TEST(AnalyticSurfacesTest, TessellationsAreManifoldAndFaceOutwards) {
   for (const AnalyticSurface& surface : analytic_surfaces())
-    for (const auto kind :
-         {Tessellation::even, Tessellation::uneven, Tessellation::ragged, Tessellation::needles}) {
+    for (const auto kind : {Tessellation::kEven, Tessellation::kUneven, Tessellation::kRagged,
+                            Tessellation::kNeedles}) {
       SCOPED_TRACE(surface.name + " " + name_of(kind));
       AnalyticMesh m = tessellate(surface, kind, 2500);
       ASSERT_EQ(m.truth.size(), m.mesh.points.size());
@@ -72,7 +72,7 @@ TEST(AnalyticSurfacesTest, TessellationsAreManifoldAndFaceOutwards) {
       for (const auto& t : m.mesh.triangles) {
         const auto& p = m.mesh.points;
         const Vector3d normal = (p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]).normalized();
-        ASSERT_GT(normal.dot(m.truth[t[0]].normal), kind == Tessellation::needles ? 0 : 0.5);
+        ASSERT_GT(normal.dot(m.truth[t[0]].normal), kind == Tessellation::kNeedles ? 0 : 0.5);
       }
       const auto count = static_cast<std::int64_t>(m.mesh.points.size());
       const kernels::BuiltSurface built = kernels::build_surface(std::move(m.mesh));
@@ -86,7 +86,7 @@ TEST(AnalyticSurfacesTest, TessellationsAreManifoldAndFaceOutwards) {
 }
 
 TEST(AnalyticSurfacesTest, NeedlesHaveShortEdgesAndHubs) {
-  const AnalyticMesh m = tessellate(analytic_surfaces()[2], Tessellation::needles, 10000);
+  const AnalyticMesh m = tessellate(analytic_surfaces()[2], Tessellation::kNeedles, 10000);
   const EdgeLengths lengths = edge_lengths(m);
   EXPECT_GT(lengths.longest, 50 * lengths.shortest);
   std::map<std::int32_t, int> valence;
@@ -98,15 +98,15 @@ TEST(AnalyticSurfacesTest, NeedlesHaveShortEdgesAndHubs) {
 
 TEST(AnalyticSurfacesTest, UnevenEdgesDiffer) {
   const EdgeLengths even =
-      edge_lengths(tessellate(analytic_surfaces()[0], Tessellation::even, 2500));
+      edge_lengths(tessellate(analytic_surfaces()[0], Tessellation::kEven, 2500));
   const EdgeLengths uneven =
-      edge_lengths(tessellate(analytic_surfaces()[0], Tessellation::uneven, 2500));
+      edge_lengths(tessellate(analytic_surfaces()[0], Tessellation::kUneven, 2500));
   EXPECT_LT(even.longest, 1.5 * even.shortest);
   EXPECT_GT(uneven.longest, 3 * uneven.shortest);
 }
 
 TEST(AnalyticSurfacesTest, NoiseHasItsSigmaAlongTheNormal) {
-  AnalyticMesh m = tessellate(analytic_surfaces()[0], Tessellation::even, 10000);
+  AnalyticMesh m = tessellate(analytic_surfaces()[0], Tessellation::kEven, 10000);
   const double edge = mean_edge_length(m.mesh);
   add_normal_noise(m, 0.05 * edge, 7);
   double variance = 0;

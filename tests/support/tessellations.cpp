@@ -41,9 +41,9 @@ struct DomainMesh {
   /// b - a, the short way round.
   Vector3d difference(const Vector3d& a, const Vector3d& b) const {
     Vector3d d = b - a;
-    const bool s_wraps = domain == Domain::torus || domain == Domain::cylinder;
+    const bool s_wraps = domain == Domain::kTorus || domain == Domain::kCylinder;
     if (s_wraps) d.x() -= std::round(d.x());
-    if (domain == Domain::torus) d.y() -= std::round(d.y());
+    if (domain == Domain::kTorus) d.y() -= std::round(d.y());
     return d;
   }
 };
@@ -51,7 +51,7 @@ struct DomainMesh {
 DomainMesh spherical_domain(int vertices) {
   int levels = 0;
   while (20 * std::pow(4, levels) < vertices) ++levels;
-  DomainMesh d{icosphere(levels), Domain::sphere, {}};
+  DomainMesh d{icosphere(levels), Domain::kSphere, {}};
   d.cell = Vector3d::Constant(mean_edge_length(d.mesh));
   return d;
 }
@@ -59,15 +59,15 @@ DomainMesh spherical_domain(int vertices) {
 /// `ns` x `nt` vertices; connectivity as the shapes of that topology have it.
 DomainMesh grid_domain(Domain domain, int vertices) {
   // Cells of the torus and the cylinder are then about square.
-  const double aspect = domain == Domain::square ? 1 : 2.5;
+  const double aspect = domain == Domain::kSquare ? 1 : 2.5;
   const int nt = std::max(3, static_cast<int>(std::lround(std::sqrt(vertices / aspect) / 2)) * 2);
-  const int ns = domain == Domain::square ? nt : std::max(3, vertices / nt / 2 * 2);
-  const int last_s = domain == Domain::square ? ns - 1 : ns;
-  const int last_t = domain == Domain::torus ? nt : nt - 1;
+  const int ns = domain == Domain::kSquare ? nt : std::max(3, vertices / nt / 2 * 2);
+  const int last_s = domain == Domain::kSquare ? ns - 1 : ns;
+  const int last_t = domain == Domain::kTorus ? nt : nt - 1;
   DomainMesh d{{}, domain, {1.0 / last_s, 1.0 / last_t, 0}};
-  if (domain == Domain::torus) d.mesh = torus(1, 0.4, ns, nt);
-  if (domain == Domain::cylinder) d.mesh = cylinder(1, 1, ns, nt - 1);
-  if (domain == Domain::square) d.mesh = plane(1, nt - 1);
+  if (domain == Domain::kTorus) d.mesh = torus(1, 0.4, ns, nt);
+  if (domain == Domain::kCylinder) d.mesh = cylinder(1, 1, ns, nt - 1);
+  if (domain == Domain::kSquare) d.mesh = plane(1, nt - 1);
   for (int i = 0; i < ns; ++i)
     for (int j = 0; j < nt; ++j)
       d.mesh.points[i * nt + j] = {static_cast<double>(i) / last_s, static_cast<double>(j) / last_t,
@@ -80,7 +80,7 @@ void warp(DomainMesh& d) {
   constexpr double kAmount = 0.5;
   const double pi = std::numbers::pi;
   for (Vector3d& p : d.mesh.points) {
-    if (d.domain == Domain::sphere) {
+    if (d.domain == Domain::kSphere) {
       const Vector3d field(std::sin(3 * p.y()), std::sin(3 * p.z()), std::sin(3 * p.x()));
       p = (p + 0.22 * field).normalized();
       continue;
@@ -100,12 +100,12 @@ void jitter(DomainMesh& d) {
   for (Vector3d& p : d.mesh.points) {
     Vector3d move;
     for (int c = 0; c < 3; ++c) move[c] = 0.3 * random.signed_uniform() * d.cell[c];
-    if (d.domain == Domain::sphere) {
+    if (d.domain == Domain::kSphere) {
       p = (p + move - move.dot(p) * p).normalized();
       continue;
     }
-    if (d.domain == Domain::square && (p.x() == 0 || p.x() == 1)) move.x() = 0;
-    if (d.domain != Domain::torus && (p.y() == 0 || p.y() == 1)) move.y() = 0;
+    if (d.domain == Domain::kSquare && (p.x() == 0 || p.x() == 1)) move.x() = 0;
+    if (d.domain != Domain::kTorus && (p.y() == 0 || p.y() == 1)) move.y() = 0;
     p += move;
   }
 }
@@ -283,24 +283,24 @@ void add_needles(DomainMesh& d) {
 
 const char* name_of(Tessellation tessellation) {
   switch (tessellation) {
-    case Tessellation::even:
+    case Tessellation::kEven:
       return "even";
-    case Tessellation::uneven:
+    case Tessellation::kUneven:
       return "uneven";
-    case Tessellation::ragged:
+    case Tessellation::kRagged:
       return "ragged";
-    case Tessellation::needles:
+    case Tessellation::kNeedles:
       break;
   }
   return "needles";
 }
 
 AnalyticMesh tessellate(const AnalyticSurface& surface, Tessellation tessellation, int vertices) {
-  DomainMesh d = surface.domain == Domain::sphere ? spherical_domain(vertices)
-                                                  : grid_domain(surface.domain, vertices);
-  if (tessellation == Tessellation::uneven) warp(d);
-  if (tessellation == Tessellation::ragged) jitter(d);
-  if (tessellation == Tessellation::needles) add_needles(d);
+  DomainMesh d = surface.domain == Domain::kSphere ? spherical_domain(vertices)
+                                                   : grid_domain(surface.domain, vertices);
+  if (tessellation == Tessellation::kUneven) warp(d);
+  if (tessellation == Tessellation::kRagged) jitter(d);
+  if (tessellation == Tessellation::kNeedles) add_needles(d);
   AnalyticMesh result{std::move(d.mesh), {}};
   for (Vector3d& p : result.mesh.points) {
     result.truth.push_back(surface.at(p));
