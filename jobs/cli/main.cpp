@@ -5,9 +5,11 @@
 #include <exception>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include "jobs/cli/command.hpp"
+#include "jobs/stages/chosen_instruction_set.hpp"
 
 namespace {
 
@@ -32,8 +34,23 @@ bool results_were_written() {
   return std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good();
 }
 
+/// Returns the version, and in a second line how patches are traced on this machine.
+std::string version_text() {
+  using namespace semigeo;
+  return SEMIGEO_VERSION "\nsimd: " +
+         std::string(kernels::name_of(jobs::chosen_instruction_set())) + " (this CPU has " +
+         jobs::supported_instruction_sets() + ")";
+}
+
 int run(int argc, char** argv) {
   using namespace semigeo::jobs::cli;
+  std::string version;
+  try {
+    version = version_text();
+  } catch (const std::invalid_argument& e) {
+    std::fprintf(stderr, "semigeo: %s\n", e.what());
+    return kUsage;
+  }
   CLI::App app{"semigeo turns archives of 3-D scans into multi-scale surface datasets.", "semigeo"};
   app.formatter(std::make_shared<ExamplesFirst>());
   app.footer(
@@ -44,7 +61,7 @@ int run(int argc, char** argv) {
       "  semigeo check archive                   is every byte as it was written?\n"
       "  semigeo recognise scene.ply --library archive   which models are in it, and where\n"
       "  semigeo export archive/scans/x.ply.vtkhdf --level 4 --output smooth.ply\n");
-  app.set_version_flag("--version", SEMIGEO_VERSION);
+  app.set_version_flag("--version", version);
   app.set_config("--config", "", "Read options from a TOML file like archive/semigeo.toml");
   app.allow_config_extras(CLI::config_extras_mode::error);
   app.require_subcommand(1);

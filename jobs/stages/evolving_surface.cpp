@@ -2,14 +2,17 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "engine/stopwatch.hpp"
+#include "jobs/stages/chosen_instruction_set.hpp"
 #include "jobs/stages/remesh_surface.hpp"
 #include "kernels/evolution/evolution.hpp"
+#include "kernels/lanes/evolve_vertices.hpp"
 #include "kernels/surface/vertex_rows.hpp"
 
 namespace semigeo::jobs {
@@ -26,6 +29,20 @@ constexpr double kMaxRestoration = 8;
 /// The number of further passes for the normals of vertices with truncated patches. Errors along a
 /// rim influence each other; two passes suffice.
 constexpr int kRimPasses = 2;
+
+/// Computes the patches of `count` vertices, at most `kVertexBlock`, and calls
+/// `use(v, its result)` for each. `vertex_at(i)` is vertex i.
+template <typename VertexAt, typename Use>
+void evolve_block(const kernels::SampledSurface& surface, const kernels::PatchLayout& layout,
+                  kernels::InstructionSet set, std::int64_t count, const VertexAt& vertex_at,
+                  const Use& use) {
+  std::array<std::int32_t, kVertexBlock> first;
+  std::array<kernels::EvolvedVertex, kVertexBlock> evolved;
+  const auto n = static_cast<std::size_t>(count);
+  for (std::size_t i = 0; i < n; ++i) first[i] = kernels::first_edge(surface.mesh, vertex_at(i));
+  kernels::evolve_vertices(surface, {first.data(), n}, layout, set, {evolved.data(), n});
+  for (std::size_t i = 0; i < n; ++i) use(vertex_at(i), evolved[i]);
+}
 
 /// Sets the mark. Any number of threads may call it; reading first keeps the cache line shared.
 void note_patch(std::uint8_t& has_patch) {
@@ -52,7 +69,7 @@ std::vector<std::int32_t> order_by_source(const std::vector<std::int32_t>& sourc
 
 EvolvingSurface::EvolvingSurface(kernels::Surface surface, const EvolutionOptions& options,
                                  const engine::RunContext& context, Origins origins)
-    : context_(context), options_(options) {
+    : context_(context), options_(options), instruction_set_(chosen_instruction_set()) {
   const double mean = kernels::mean_edge_length(surface);
   if (mean > 0) unit_ = std::exp2(std::round(std::log2(mean)));
   mean_edge_length_ = first_edge_length_ = mean / unit_;
@@ -165,12 +182,13 @@ void EvolvingSurface::sharpen(std::int64_t count, const VertexAt& vertex_at,
                               std::vector<std::uint8_t>& truncated) {
   const kernels::SampledSurface surface = sampled();
   context_.workers.for_blocks(count, kVertexBlock, [&](IndexRange range) {
-    for (auto i = range.begin; i < range.end; ++i) {
-      const std::int32_t v = vertex_at(i);
-      const auto e = kernels::evolve_vertex(surface, v, layout());
-      next_normals_[v] = e.normal;
-      truncated[v] = e.patch_completeness > 0 && e.patch_completeness < 1;
-    }
+    evolve_block(
+        surface, layout(), instruction_set_, range.end - range.begin,
+        [&](std::size_t i) { return vertex_at(range.begin + static_cast<std::int64_t>(i)); },
+        [&](std::int32_t v, const kernels::EvolvedVertex& e) {
+          next_normals_[v] = e.normal;
+          truncated[v] = e.patch_completeness > 0 && e.patch_completeness < 1;
+        });
   });
   context_.workers.for_blocks(count, kFaceBlock, [&](IndexRange range) {
     for (auto i = range.begin; i < range.end; ++i) {
@@ -215,9 +233,10 @@ LevelFields EvolvingSurface::evaluate() {
   const kernels::PatchLayout patch = layout();
   const auto per_length = static_cast<float>(1 / unit_);
   context_.workers.for_blocks(n, kVertexBlock, [&](IndexRange range) {
-    for (auto v = range.begin; v < range.end; ++v) {
-      const kernels::EvolvedVertex e =
-          kernels::evolve_vertex(surface, static_cast<std::int32_t>(v), patch);
+    const auto vertex_at = [&](std::size_t i) {
+      return static_cast<std::int32_t>(range.begin + static_cast<std::int64_t>(i));
+    };
+    const auto keep = [&](std::int32_t v, const kernels::EvolvedVertex& e) {
       fields.points[v] = mesh_.points[v].head<3>() * static_cast<float>(unit_);
       fields.gaussian_curvature[v] = e.gaussian_curvature * per_length * per_length;
       fields.mean_curvature[v] = e.mean_curvature * per_length;
@@ -231,7 +250,8 @@ LevelFields EvolvingSurface::evaluate() {
       if (e.patch_completeness > 0) note_patch(part_has_patch_[mesh_.part[v]]);
       next_points_[v] << e.position, 0.0f;
       next_normals_[v] = e.smoothed_normal;
-    }
+    };
+    evolve_block(surface, patch, instruction_set_, range.end - range.begin, vertex_at, keep);
     context_.observer.worked(range.end - range.begin);
   });
   return fields;

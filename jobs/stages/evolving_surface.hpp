@@ -10,6 +10,7 @@
 #include "engine/run_context.hpp"
 #include "jobs/stages/part_measures.hpp"
 #include "kernels/evolution/evolution.hpp"
+#include "kernels/lanes/instruction_set.hpp"
 #include "kernels/repair/remeshing.hpp"
 #include "kernels/surface/surface.hpp"
 
@@ -131,6 +132,7 @@ class EvolvingSurface {
 
   engine::RunContext context_;
   EvolutionOptions options_;
+  kernels::InstructionSet instruction_set_;
   kernels::LevelMesh mesh_;  ///< In internal units.
   bool vanished_ = false;
   std::int64_t target_faces_ = 0;             ///< Number of faces that refining maintains.

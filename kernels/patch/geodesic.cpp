@@ -95,7 +95,6 @@ Eigen::Vector3f direction_in_space(const GeodesicMesh& mesh, const Ray& ray) {
 }
 
 Ray ray_from_vertex(const GeodesicMesh& mesh, std::int32_t v, const Eigen::Vector3f& direction) {
-  constexpr float kOnPlane = 1e-6f;
   const Eigen::Vector3f p = mesh.point(v);
   const Eigen::Vector3f& w = mesh.normals[v];
   const Eigen::Vector3f right = direction.cross(w).normalized();

@@ -6,19 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "kernels/patch/geodesic_limits.hpp"
 #include "kernels/surface/connectivity.hpp"
 
 namespace semigeo::kernels {
-
-/// The distance from a corner, in barycentric coordinates, below which a point is moved onto it
-/// (thesis 5.2.3).
-inline constexpr float kSnap = 1e-4f;
-/// The number of faces after which a half-line ends, unless its mesh says otherwise: the mesh is
-/// far finer there than its mean edge.
-inline constexpr int kMaxCrossings = 400;
-/// The number of faces of a vertex beyond which a half-line ends there: to find the way round the
-/// hub of a fan of 100,000 faces would cost as much as a whole scan.
-inline constexpr int kMaxFan = 1024;
 
 /// Holds what a geodesic needs to know of one face, in one cache line. A point in the face is
 /// written in the frame of one of its half-edges h, as origin(h) + x (target(h) - origin(h)) + y

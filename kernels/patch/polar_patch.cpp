@@ -48,17 +48,6 @@ double angle(int ray) {
   return 2 * std::numbers::pi * ray / kRays;
 }
 
-/// Returns (cos, sin) of the angle of every ray.
-const std::array<Eigen::Vector2f, kRays>& ray_directions() {
-  static const std::array<Eigen::Vector2f, kRays> directions = [] {
-    std::array<Eigen::Vector2f, kRays> d;
-    for (int j = 0; j < kRays; ++j)
-      d[j] = {static_cast<float>(std::cos(angle(j))), static_cast<float>(std::sin(angle(j)))};
-    return d;
-  }();
-  return directions;
-}
-
 /// Holds filters for a whole patch, made once; `samples()` of every whole patch has the same order.
 DerivativeFilters whole_filters(bool fitted) {
   PolarPatch patch;
@@ -69,6 +58,16 @@ DerivativeFilters whole_filters(bool fitted) {
 }
 
 }  // namespace
+
+const std::array<Eigen::Vector2f, kRays>& ray_directions() {
+  static const std::array<Eigen::Vector2f, kRays> directions = [] {
+    std::array<Eigen::Vector2f, kRays> d;
+    for (int j = 0; j < kRays; ++j)
+      d[j] = {static_cast<float>(std::cos(angle(j))), static_cast<float>(std::sin(angle(j)))};
+    return d;
+  }();
+  return directions;
+}
 
 const std::array<float, kReach + 1>& polar_weights() {
   static const std::array<float, kReach + 1> weights = make_weights();

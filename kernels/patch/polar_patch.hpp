@@ -13,6 +13,9 @@ namespace semigeo::kernels {
 /// samples as an axis of a semigeodesic patch; all together that is 65 samples.
 inline constexpr int kRays = 16;
 
+/// Returns the cosine and sine of the angle of every ray.
+const std::array<Eigen::Vector2f, kRays>& ray_directions();
+
 /// Holds the samples of a geodesic polar patch (thesis 4.1.3). Ray j leaves the vertex at the angle
 /// 2 pi j / kRays from the first edge, and has samples at distances 1 ... reach[j] steps. Positions
 /// are relative to the vertex, as (x, y, z, 0); the vertex itself is no sample.

@@ -4,6 +4,7 @@ import fcntl
 import json
 import os
 import pty
+import re
 import shutil
 import struct
 import subprocess
@@ -33,8 +34,27 @@ class UsageTest(SemigeoTest):
             line = next(l for l in text.splitlines() if l.strip().startswith(option + " "))
             self.assertIn(f"={default}", line.replace(" ", ""), option)
 
-    def test_version(self):
-        self.assertRegex(self.semigeo("--version").stdout, r"^\d+\.\d+\.\d+\n$")
+    def test_version_names_the_instruction_set(self):
+        self.assertRegex(self.semigeo("--version").stdout,
+                         r"^\d+\.\d+\.\d+\nsimd: \w+ \(this CPU has scalar, baseline.*\)\n$")
+
+    def test_the_instruction_set_can_be_forced_and_changes_no_byte(self):
+        write_ply(self.scans / "a.ply", icosphere(3))
+        datasets = {}
+        for name in re.search(r"has (.*)\)", self.semigeo("--version").stdout)[1].split(", "):
+            with self.subTest(name):
+                simd = {**os.environ, "SEMIGEO_SIMD": name}
+                self.assertIn(f"simd: {name} (", self.semigeo("--version", env=simd).stdout)
+                archive = self.folder / name
+                self.semigeo("run", self.scans, "--output", archive, "--levels", 2, env=simd)
+                datasets[name] = (archive / "scans/a.ply.vtkhdf").read_bytes()
+        self.assertEqual(len(set(datasets.values())), 1)
+
+    def test_an_unknown_instruction_set_is_misuse(self):
+        simd = {**os.environ, "SEMIGEO_SIMD": "mmx"}
+        process = self.semigeo("--version", env=simd, code=2)
+        self.assertIn("SEMIGEO_SIMD=mmx: no such instruction set; give one of scalar, baseline",
+                      process.stderr)
 
     def test_misuse_is_exit_code_2_and_touches_nothing(self):
         write_ply(self.scans / "a.ply", icosphere(0))

@@ -12,6 +12,7 @@ set(rules
   "kernels/repair: kernels/surface"
   "kernels/patch: kernels/surface"
   "kernels/evolution: kernels/surface kernels/patch"
+  "kernels/lanes: kernels/surface kernels/patch kernels/evolution"
   "kernels/features: kernels/surface kernels/patch"
   "kernels/recognition: kernels/surface kernels/features"
   "kernels/recognition/thesis: kernels/surface kernels/features kernels/recognition"

@@ -1,0 +1,24 @@
+#include <cstdint>
+
+#include "kernels/lanes/patch_block.hpp"
+#include "kernels/patch/geodesic_limits.hpp"
+
+#include "kernels/lanes/vectors.inc"
+
+namespace semigeo::kernels::avx512 {
+
+using namespace lanes;
+
+#include "kernels/lanes/vectors_avx512.inc"
+
+#include "kernels/lanes/geometry.inc"
+
+#include "kernels/lanes/fans.inc"
+
+#include "kernels/lanes/positions.inc"
+
+#include "kernels/lanes/trace.inc"
+
+#include "kernels/lanes/block.inc"
+
+}  // namespace semigeo::kernels::avx512
