@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// It is raised whenever the same scan and parameters give other bytes.
-static constexpr const char* kVersion = "surface 10";
+static constexpr const char* kVersion = "surface 11";
 
 /// Names every number and word of a result, for writing and for reading.
 template <typename Visit>

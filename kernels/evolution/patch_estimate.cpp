@@ -9,12 +9,12 @@
 namespace semigeo::kernels {
 namespace {
 
-template <typename AnyPatch>
-PatchEstimate estimate_truncated(const AnyPatch& patch, float step) {
+/// `samples` are those of the patch, in any form that the fits take.
+template <typename AnyPatch, typename Samples>
+PatchEstimate estimate_truncated(const AnyPatch& patch, const Samples& samples, float step) {
   PatchEstimate e{};
   e.moved = patch.paired_mean();
   e.completeness = patch.completeness();
-  const PatchSamples samples = patch.samples();
   if (const auto quadratic = fit_quadratic(samples, step)) {
     e.valid = e.completeness >= kMinCompleteness;
     e.smoothed = *quadratic;
@@ -26,13 +26,13 @@ PatchEstimate estimate_truncated(const AnyPatch& patch, float step) {
 }  // namespace
 
 PatchEstimate estimate(const Patch& patch, float step) {
-  if (!patch.whole()) return estimate_truncated(patch, step);
+  if (!patch.whole()) return estimate_truncated(patch, patch, step);
   const PatchDerivatives smoothed = convolve(patch, step);
   return {smoothed.r, smoothed, fit(patch, step), 1, true};
 }
 
 PatchEstimate estimate(const PolarPatch& patch, float step) {
-  if (!patch.whole()) return estimate_truncated(patch, step);
+  if (!patch.whole()) return estimate_truncated(patch, patch.samples(), step);
   return {patch.paired_mean(), convolve_tangents(patch, step), fit(patch, step), 1, true};
 }
 

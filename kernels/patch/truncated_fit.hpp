@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "kernels/patch/patch.hpp"
 #include "kernels/patch/patch_derivatives.hpp"
 #include "kernels/patch/patch_samples.hpp"
 
@@ -17,10 +18,15 @@ inline constexpr double kMaxNoiseGain = 16;
 /// `convolve`. r is zero. The result is empty if too few samples exist, or too badly spread, to
 /// determine second derivatives.
 std::optional<PatchDerivatives> fit_quadratic(const PatchSamples& samples, float step);
+/// Returns the same for a semigeodesic patch, three times as fast: its samples lie on a lattice,
+/// and sums over them are products of sums along u and along v.
+std::optional<PatchDerivatives> fit_quadratic(const Patch& patch, float step);
 
 /// Returns the derivatives of the surface itself at a truncated patch, by least squares with a
 /// polynomial of degree 4; r is zero. The result is empty where that would amplify noise by more
 /// than `kMaxNoiseGain`.
 std::optional<PatchDerivatives> fit_quartic(const PatchSamples& samples, float step);
+/// Returns the same for a semigeodesic patch, faster as well.
+std::optional<PatchDerivatives> fit_quartic(const Patch& patch, float step);
 
 }  // namespace semigeo::kernels

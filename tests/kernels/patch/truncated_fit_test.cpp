@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
+#include <random>
+#include <string>
 
 #include "kernels/evolution/curvature.hpp"
 #include "tests/support/graph_patch.hpp"
@@ -83,6 +86,42 @@ TEST(PatchPairedMeanTest, APlaneStaysWhereItIs) {
     patch.reach_down[c] = static_cast<std::int8_t>((c * 3) % 5);
   }
   EXPECT_LT(patch.paired_mean().norm(), 1e-6);
+}
+
+/// Compares derivatives, in multiples of a step.
+void expect_near(const std::optional<PatchDerivatives>& fast,
+                 const std::optional<PatchDerivatives>& exact, const std::string& what) {
+  ASSERT_EQ(fast.has_value(), exact.has_value()) << what;
+  if (!exact) return;
+  EXPECT_LT((fast->ru - exact->ru).norm(), 1e-5f) << what;
+  EXPECT_LT((fast->rv - exact->rv).norm(), 1e-5f) << what;
+  EXPECT_LT((fast->ruu - exact->ruu).norm(), 1e-5f) << what;
+  EXPECT_LT((fast->ruv - exact->ruv).norm(), 1e-5f) << what;
+  EXPECT_LT((fast->rvv - exact->rvv).norm(), 1e-5f) << what;
+}
+
+TEST(TruncatedFitTest, SumsOverTheLatticeEqualSumsOverTheSamples) {
+  std::mt19937 random(3);
+  const auto draw = [&](int low, int high) {
+    return static_cast<std::int8_t>(std::uniform_int_distribution<int>(low, high)(random));
+  };
+  std::normal_distribution<float> noise(0, 0.3f);
+  int determined = 0;
+  for (int round = 0; round < 500; ++round) {
+    Patch patch = quadratic_patch(0.1f, 0.2f, -0.1f, 1);
+    const int left = draw(0, kReach), right = draw(0, kReach);
+    for (int c = 0; c < kTaps; ++c) {
+      const bool exists = kReach - c <= left && c - kReach <= right;
+      patch.reach_up[c] = exists ? draw(0, kReach) : std::int8_t{-1};
+      patch.reach_down[c] = exists ? draw(0, kReach) : std::int8_t{-1};
+      for (auto& sample : patch.sample[c]) sample.z() += noise(random);
+    }
+    const std::string what = "round " + std::to_string(round);
+    expect_near(fit_quadratic(patch, 1), fit_quadratic(patch.samples(), 1), what);
+    expect_near(fit_quartic(patch, 1), fit_quartic(patch.samples(), 1), what);
+    determined += fit_quartic(patch, 1).has_value();
+  }
+  EXPECT_GT(determined, 100);
 }
 
 }  // namespace
