@@ -126,8 +126,9 @@ std::vector<std::byte> with_checksum(std::span<const std::byte> bytes) {
 
 using Compressor = std::unique_ptr<libdeflate_compressor, FreeCompressor>;
 
-// The low bytes of floating-point coordinates are noise, and shuffling puts them in front, one
-// plane after the other. Returns how many bytes of such planes there are, by packing a sample.
+// The low bytes of coordinates, and of the vertices of triangles, are noise, and shuffling puts them
+// in front, one plane after the other. Returns how many bytes of such planes there are, by packing a
+// sample, which must become shorter by a thirty-second part.
 std::size_t noise_in_front(libdeflate_compressor* compressor, std::span<const std::byte> shuffled,
                            std::size_t element_size) {
   constexpr std::size_t kSample = 4096;
@@ -137,7 +138,7 @@ std::size_t noise_in_front(libdeflate_compressor* compressor, std::span<const st
   std::size_t noise = 0;
   while (noise + plane < shuffled.size() &&
          libdeflate_deflate_compress(compressor, shuffled.data() + noise + (plane - kSample) / 2,
-                                     kSample, packed.data(), kSample - kSample / 64) == 0)
+                                     kSample, packed.data(), kSample - kSample / 32) == 0)
     noise += plane;
   return noise;
 }
@@ -268,9 +269,8 @@ EncodedChunk encode_rows(const ArrayShape& shape, std::span<const std::byte> row
   shuffle(rows, element_size, scratch.get());
   const Compressor compressor(libdeflate_alloc_compressor(kFastest));
   if (!compressor) throw std::bad_alloc();
-  const bool real = shape.type == ElementType::kFloat32 || shape.type == ElementType::kFloat64;
   const std::span<const std::byte> shuffled(scratch.get(), size);
-  const std::size_t noise = real ? noise_in_front(compressor.get(), shuffled, element_size) : 0;
+  const std::size_t noise = noise_in_front(compressor.get(), shuffled, element_size);
   const std::size_t packed = zlib_stream(compressor.get(), shuffled, noise, scratch.get() + size);
   if (packed > 0) {
     chunk.bytes = with_checksum({scratch.get() + size, packed});
