@@ -8,6 +8,7 @@
 
 #include "kernels/surface/circulators.hpp"
 #include "kernels/surface/nearest_surface.hpp"
+#include "kernels/surface/radix_sort.hpp"
 
 namespace semigeo::kernels {
 namespace {
@@ -46,8 +47,17 @@ bool is_maximum(const Connectivity& surface, std::span<const Eigen::Vector4f> po
   if (!(radius > 0)) return true;
   if (outdone_two_edges_away(surface, points, field, v, radius)) return false;
   bool highest = true;
+  const auto outdoes = [&](std::int32_t w) {
+    return w != v && field.comparable(v, w) && field.higher(w, v);
+  };
+  ball.surround(surface, points, v, radius, [&](std::int32_t w) {
+    highest = !outdoes(w);
+    return highest;
+  });
+  if (highest) return true;
+  highest = true;  // unless it is outdone along the surface as well
   ball.grow(surface, points, v, radius, [&](std::int32_t w, double) {
-    highest = w == v || !field.comparable(v, w) || field.higher(v, w);
+    highest = !outdoes(w);
     return highest;
   });
   return highest;
@@ -113,15 +123,20 @@ std::vector<float> prominences(const Connectivity& surface, const CurvatureField
   // one number each: the height, whose bits are in the order of positive floats, upside down, and
   // the half-edge.
   std::vector<std::uint64_t> passes;
-  for (const std::int32_t h : edges(surface)) {
-    const std::int32_t v = surface.origin(h);
-    const std::int32_t w = surface.target(h);
-    if (peaks[v] == peaks[w] || !field.comparable(v, w)) continue;
-    const float height = std::min(field.magnitude(v), field.magnitude(w));
-    passes.push_back(std::uint64_t{~std::bit_cast<std::uint32_t>(height)} << 32 |
-                     static_cast<std::uint32_t>(h));
+  for (std::int32_t f = 0; f < surface.face_count(); ++f) {
+    const auto& t = surface.triangles[f];
+    if (t[0] == kNone || (peaks[t[0]] == peaks[t[1]] && peaks[t[1]] == peaks[t[2]])) continue;
+    for (int i = 0; i < 3; ++i) {
+      const std::int32_t h = halfedge(f, i);
+      const std::int32_t v = t[i];
+      const std::int32_t w = t[i == 2 ? 0 : i + 1];
+      if (surface.twin[h] > h || peaks[v] == peaks[w] || !field.comparable(v, w)) continue;
+      const float height = std::min(field.magnitude(v), field.magnitude(w));
+      passes.push_back(std::uint64_t{~std::bit_cast<std::uint32_t>(height)} << 32 |
+                       static_cast<std::uint32_t>(h));
+    }
   }
-  std::sort(passes.begin(), passes.end());
+  radix_sort(passes, 32, 64);  // half-edges already ascend
 
   // The sea falls: at each pass the lower of two islands becomes part of the higher one.
   std::vector<float> result(peaks.size(), 0.0f);

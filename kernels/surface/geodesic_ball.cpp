@@ -30,21 +30,24 @@ double across_face(double from_first, double from_second, double length, double 
 void GeodesicBall::start(std::int32_t centre) {
   heap_.clear();
   if (table_.empty()) table_.resize(256);
-  if (used_ > 0) std::fill(table_.begin(), table_.end(), Known{});
+  if (++ball_ == 0) {  // all numbers were used once
+    std::fill(table_.begin(), table_.end(), Known{});
+    ball_ = 1;
+  }
   used_ = 0;
-  offer(centre, 0);
+  offer(slot_of(centre), 0);
 }
 
-GeodesicBall::Known& GeodesicBall::known(std::int32_t vertex) {
-  if (2 * used_ >= table_.size()) enlarge();
-  const std::size_t mask = table_.size() - 1;
-  std::size_t slot = (static_cast<std::uint32_t>(vertex) * 2654435769u) & mask;
-  while (table_[slot].vertex != kNone && table_[slot].vertex != vertex) slot = (slot + 1) & mask;
-  if (table_[slot].vertex == kNone) {
-    table_[slot] = {vertex, false, HUGE_VAL};
+/// Returns where the vertex is in the table, and enters it if need be.
+std::uint32_t GeodesicBall::slot_of(std::int32_t vertex) {
+  const auto mask = static_cast<std::uint32_t>(table_.size() - 1);
+  std::uint32_t slot = (static_cast<std::uint32_t>(vertex) * 2654435769u) & mask;
+  while (table_[slot].ball == ball_ && table_[slot].vertex != vertex) slot = (slot + 1) & mask;
+  if (table_[slot].ball != ball_) {
+    table_[slot] = {vertex, ball_, HUGE_VAL, false};
     ++used_;
   }
-  return table_[slot];
+  return slot;
 }
 
 void GeodesicBall::enlarge() {
@@ -52,14 +55,14 @@ void GeodesicBall::enlarge() {
   old.swap(table_);
   used_ = 0;
   for (const Known& entry : old)
-    if (entry.vertex != kNone) known(entry.vertex) = entry;
+    if (entry.ball == ball_) table_[slot_of(entry.vertex)] = entry;
 }
 
-void GeodesicBall::offer(std::int32_t vertex, double distance) {
-  Known& entry = known(vertex);
+void GeodesicBall::offer(std::uint32_t slot, double distance) {
+  Known& entry = table_[slot];
   if (entry.visited || !(distance < entry.distance)) return;
   entry.distance = distance;
-  heap_.push_back({distance, vertex});
+  heap_.push_back({distance, entry.vertex});
   std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
 }
 
@@ -68,7 +71,7 @@ bool GeodesicBall::visit_nearest(std::int32_t& vertex, double& distance) {
     std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
     const Front front = heap_.back();
     heap_.pop_back();
-    Known& entry = known(front.vertex);
+    Known& entry = table_[slot_of(front.vertex)];
     if (entry.visited || entry.distance != front.distance) continue;
     entry.visited = true;
     vertex = front.vertex;
@@ -84,27 +87,31 @@ void GeodesicBall::collect_ring(const Connectivity& surface,
   const Eigen::Vector3d p = points[vertex].head<3>().cast<double>();
   for (const std::int32_t w : neighbours(surface, vertex)) {
     const Eigen::Vector3d spoke = points[w].head<3>().cast<double>() - p;
-    const Known& entry = known(w);
-    ring_.push_back({w, entry.visited, entry.distance, spoke.norm(), spoke});
+    ring_.push_back({w, 0, false, 0, spoke.norm(), spoke});
+  }
+  while (2 * (used_ + ring_.size()) >= table_.size()) enlarge();
+  for (Neighbour& to : ring_) {
+    to.slot = slot_of(to.vertex);
+    to.visited = table_[to.slot].visited;
+    to.distance = table_[to.slot].distance;
   }
   ring_closed_ = !surface.on_boundary(vertex);
 }
 
 void GeodesicBall::expand(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
-                          std::int32_t vertex, bool is_centre, double radius) {
-  const double here = known(vertex).distance;
+                          std::int32_t vertex, double distance, bool is_centre, double radius) {
   collect_ring(surface, points, vertex);
-  const auto reach = [&](const Neighbour& to, double distance) {
-    if (!to.visited && (is_centre || distance <= radius)) offer(to.vertex, distance);
+  const auto reach = [&](const Neighbour& to, double from_centre) {
+    if (!to.visited && (is_centre || from_centre <= radius)) offer(to.slot, from_centre);
   };
-  for (const Neighbour& to : ring_) reach(to, here + to.length);
+  for (const Neighbour& to : ring_) reach(to, distance + to.length);
   if (is_centre) return;
   // Over each face, from the base between this vertex and a visited one to the third corner.
   const auto cross = [&](const Neighbour& base, const Neighbour& to) {
     if (!base.visited || to.visited || !(base.length > 0)) return;
     const double x = to.spoke.dot(base.spoke) / base.length;
     const double y = std::sqrt(std::max(0.0, to.length * to.length - x * x));
-    reach(to, across_face(here, base.distance, base.length, x, y));
+    reach(to, across_face(distance, base.distance, base.length, x, y));
   };
   const std::size_t faces = ring_closed_ ? ring_.size() : ring_.size() - 1;
   for (std::size_t i = 0; i < faces; ++i) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <random>
+#include <set>
 
 #include "tests/support/prepared_surface.hpp"
 #include "tests/support/shapes.hpp"
@@ -86,6 +87,28 @@ TEST(GeodesicBallTest, StopsWhenTold) {
   int visited = 0;
   ball.grow(s.surface, s.points, 5, 10, [&](std::int32_t, double) { return ++visited < 17; });
   EXPECT_EQ(visited, 17);
+}
+
+TEST(GeodesicBallTest, SurroundVisitsAllThatGrowVisitsAndNoVertexTwice) {
+  TriangleMesh mesh = shapes::torus(1, 0.4, 60, 24, 0.8);
+  shapes::add_noise(mesh, 0.01, 3);
+  const PreparedSurface s(std::move(mesh));
+  GeodesicBall ball;
+  for (std::int32_t centre = 0; centre < s.surface.vertex_count(); centre += 7)
+    for (const double radius : {0.0, 0.05, 0.3, 0.7}) {
+      std::set<std::int32_t> around;
+      ball.surround(s.surface, s.points, centre, radius, [&](std::int32_t v) {
+        EXPECT_TRUE(around.insert(v).second);
+        return true;
+      });
+      std::size_t within = 0;
+      ball.grow(s.surface, s.points, centre, radius, [&](std::int32_t v, double) {
+        EXPECT_TRUE(around.contains(v)) << centre << ' ' << radius << ' ' << v;
+        ++within;
+        return true;
+      });
+      EXPECT_LE(around.size(), 2 * within + 20);
+    }
 }
 
 }  // namespace
