@@ -83,7 +83,7 @@ BinaryFile::BinaryFile(const std::filesystem::path& path, const BinaryFormat& fo
 
 void BinaryFile::take(void* to, std::size_t bytes) {
   if (bytes > head_.size() - taken_) refuse("head", "ends too early");
-  std::memcpy(to, head_.data() + taken_, bytes);
+  if (bytes > 0) std::memcpy(to, head_.data() + taken_, bytes);  // `to` may be null otherwise
   taken_ += bytes;
 }
 
