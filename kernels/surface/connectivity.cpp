@@ -1,5 +1,7 @@
 #include "kernels/surface/connectivity.hpp"
 
+#include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "kernels/surface/circulators.hpp"
@@ -41,25 +43,29 @@ std::int32_t find_edge(const Connectivity& mesh, std::int32_t a, std::int32_t b)
 }
 
 std::int32_t number_parts(const Connectivity& mesh, std::vector<std::int32_t>& part) {
-  const auto vertex_count = static_cast<std::int32_t>(mesh.vertex_count());
-  part.assign(vertex_count, kNone);
-  std::int32_t part_count = 0;
-  std::vector<std::int32_t> pending;
-  for (std::int32_t seed = 0; seed < vertex_count; ++seed) {
-    if (part[seed] != kNone) continue;
-    part[seed] = part_count;
-    pending.assign(1, seed);
-    while (!pending.empty()) {
-      const std::int32_t v = pending.back();
-      pending.pop_back();
-      for (const std::int32_t w : neighbours(mesh, v)) {
-        if (part[w] != kNone) continue;
-        part[w] = part_count;
-        pending.push_back(w);
-      }
+  // Until the end, `part` has the parent of each vertex in a forest: its root is the first vertex
+  // of a part.
+  part.resize(mesh.vertex_count());
+  std::iota(part.begin(), part.end(), 0);
+  const auto root_of = [&](std::int32_t v) {
+    while (part[v] != v) {
+      part[v] = part[part[v]];
+      v = part[v];
     }
-    ++part_count;
+    return v;
+  };
+  for (const Triangle& t : mesh.triangles) {
+    if (t[0] == kNone) continue;
+    for (int i = 1; i < 3; ++i) {
+      const std::int32_t a = root_of(t[0]);
+      const std::int32_t b = root_of(t[i]);
+      part[std::max(a, b)] = std::min(a, b);
+    }
   }
+  std::int32_t part_count = 0;
+  const auto vertex_count = static_cast<std::int32_t>(part.size());
+  for (std::int32_t v = 0; v < vertex_count; ++v)
+    part[v] = part[v] == v ? part_count++ : part[part[v]];  // parents come first and are done
   return part_count;
 }
 
