@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <numbers>
+#include <span>
 
 #include "kernels/surface/nearest_surface.hpp"
 #include "tests/jobs/stages/evolve_mesh.hpp"
@@ -256,7 +256,7 @@ TEST(LevelFeaturesTest, PositionsOnLevelZeroOutliveRemeshing) {
 
 template <typename Value>
 bool same_bytes(const std::vector<Value>& a, const std::vector<Value>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Value)) == 0;
+  return std::ranges::equal(std::as_bytes(std::span(a)), std::as_bytes(std::span(b)));
 }
 
 bool same(const Feature& a, const Feature& b) {
