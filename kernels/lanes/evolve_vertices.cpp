@@ -43,32 +43,30 @@ BlockSurface plain(const SampledSurface& surface) {
           .original = &surface};
 }
 
-/// Fills the table that tells which sample of a patch belongs to a sample of a line. The vertex
-/// itself, which is on no line, is at the origin.
+/// Fills the tables that tell where the samples of lines go. The vertex itself, which is on no
+/// line, is at the origin.
 void fill_places(bool polar, BlockWorkspace& work) {
-  if (!polar)
-    for (auto& group : work.block.sample)
-      for (auto& centre : group[kSamples / 2]) std::fill_n(centre, 4, 0.0f);
-  const auto place = [&](int line, int k) -> std::uint8_t& {
-    return work.place[line * kReach + k - 1];
+  for (int i = 0; i < kBlock; ++i) work.vertex_place[i] = (i / 4 * kSamples) * 16 + i % 4 * 4;
+  const auto put = [&](int line, int k, int sample) {
+    work.sample_place[line * kReach + k - 1] = 16 * sample;
   };
+  if (polar) {
+    for (int line = 0; line < kPolarLines; ++line)
+      for (int k = 1; k <= kReach; ++k) put(line, k, line * kReach + k - 1);
+    return;
+  }
+  for (auto& group : work.block.sample)
+    for (auto& centre : group[kSamples / 2]) std::fill_n(centre, 4, 0.0f);
+  const auto sample = [](int u, int v) { return (u + kReach) * kTaps + v + kReach; };
   for (int k = 1; k <= kReach; ++k) {
-    if (polar) {
-      for (int line = 0; line < kPolarLines; ++line)
-        place(line, k) = static_cast<std::uint8_t>(line * kReach + k - 1);
-      continue;
-    }
-    const auto sample = [](int u, int v) {
-      return static_cast<std::uint8_t>((u + kReach) * kTaps + v + kReach);
-    };
-    place(kForward, k) = sample(k, 0);
-    place(kBackward, k) = sample(-k, 0);
-    place(kMiddleUp, k) = sample(0, k);
-    place(kMiddleDown, k) = sample(0, -k);
+    put(kForward, k, sample(k, 0));
+    put(kBackward, k, sample(-k, 0));
+    put(kMiddleUp, k, sample(0, k));
+    put(kMiddleDown, k, sample(0, -k));
     for (int j = 0; j < 2 * kReach; ++j) {
       const int u = j < kReach ? j + 1 : kReach - 1 - j;
-      place(kFirstColumn + 2 * j, k) = sample(u, k);
-      place(kFirstColumn + 2 * j + 1, k) = sample(u, -k);
+      put(kFirstColumn + 2 * j, k, sample(u, k));
+      put(kFirstColumn + 2 * j + 1, k, sample(u, -k));
     }
   }
 }
@@ -177,6 +175,7 @@ void evolve_vertices(const SampledSurface& surface, std::span<const std::int32_t
     const int count = static_cast<int>(std::min<std::size_t>(kBlock, first.size() - begin));
     for (int i = 0; i < count; ++i) {
       work.vertex[i] = mesh.origin(first[begin + i]);
+      Eigen::Vector4f::Map(work.centre[i]) = mesh.points[work.vertex[i]];
       work.block.state[i] = PatchState::kWhole;
       std::fill_n(work.block.reach[i], kLines, static_cast<std::int8_t>(kReach));
     }

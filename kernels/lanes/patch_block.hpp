@@ -153,8 +153,12 @@ struct BlockWorkspace {
   RayQueue<kBlock * 2 * kReach> base_rays;  ///< Samples of base lines, each the start of a column.
   VertexQueue vertices;
   SampleQueue samples;
-  std::int32_t vertex[kBlock];                                      ///< Vertex of each patch.
-  std::uint8_t place[LineNumber::kCrossing / LineNumber::kSample];  ///< Sample in `PatchBlock`.
+  std::int32_t vertex[kBlock];          ///< Vertex of each patch.
+  alignas(16) float centre[kBlock][4];  ///< Its point.
+  /// Where a sample goes, in floats from the start of `PatchBlock::sample`: the sum of what its
+  /// line and its number on it say, and of what its vertex says.
+  std::int32_t sample_place[LineNumber::kCrossing / LineNumber::kSample];
+  std::int32_t vertex_place[kBlock];
 };
 
 /// Traces the patches of one block and, if they are semigeodesic, convolves them with the filters.
