@@ -17,7 +17,7 @@
 
 namespace semigeo::engine {
 
-/// Holds the limits of a child process. A limit of 0 is no limit of ours.
+/// Holds the limits of a child process. A limit of 0 is not set.
 struct ProcessLimits {
   /// Allocations beyond this number of bytes fail in the child, which has to end by itself.
   std::uint64_t address_space_bytes = 0;
@@ -49,9 +49,11 @@ struct Command {
 /// Every function throws std::system_error if a system call fails. Needs Linux 5.11.
 class ChildProcesses {
  public:
+  /// Names a child.
   using Id = std::int64_t;
   /// The limit that ended a child.
   enum class Limit { kNone, kWallTime, kCpuTime, kLineLength };
+  /// The number of seconds for which `wait` waits as long as it takes.
   static constexpr double kForever = std::numeric_limits<double>::infinity();
   /// A child that sends a longer line is killed: a broken one must not fill our memory. In bytes.
   static constexpr std::size_t kLongestLine = std::size_t{1} << 20;
@@ -71,13 +73,14 @@ class ChildProcesses {
     Id child;
     int exit_code;  ///< -1 if a signal ended the child.
     int signal;     ///< 0 if the child ended by itself.
-    Limit limit;    ///< The limit that ended it. One on address space shows in the exit code only.
+    Limit limit;    ///< The limit that ended it. A limit on memory shows in the exit code only.
     double wall_seconds;
     double cpu_seconds;
     /// Never less than what this process had resident when it started the child, which Linux counts
     /// too.
     std::uint64_t peak_resident_bytes;
   };
+  /// What `wait` reports.
   using Event = std::variant<TimedOut, Woken, Line, Ended>;
 
   /// Makes SIGCHLD default where it is ignored, because the kernel would keep no exit code for us.

@@ -9,7 +9,7 @@
 
 namespace semigeo::engine {
 
-/// How a child process that ran a function ended, and what the function returned.
+/// Tells how a child process ended that ran a function, and what the function returned.
 struct ForkedResult {
   std::string text;    ///< All that the function returned, if it came to its end.
   int exit_code = -1;  ///< 0 if the function came to its end; -1 if a signal ended the child.
@@ -22,17 +22,18 @@ struct ForkedResult {
 class ForkedChild {
  public:
   /// Starts the child, which calls `work` and hands over the text that it returns. The child is
-  /// killed by SIGXCPU when it has used `cpu_seconds` (0 = no limit of ours, else rounded up to
-  /// whole seconds), and when the calling thread ends. An exception that leaves `work` is a crash.
-  /// Its standard error is dropped, and it dumps no core. Throws std::system_error if there can be
-  /// no child. The cost grows with the memory that this process uses, about 6 ms for each GB.
+  /// killed by SIGXCPU when it has used `cpu_seconds` (0 = no limit; other values are rounded
+  /// up to whole seconds), and when the calling thread ends. An exception that leaves `work` is a
+  /// crash. Its standard error is dropped, and it dumps no core. Throws std::system_error if there
+  /// can be no child. The cost grows with the memory that this process uses, about 6 ms for each
+  /// GB.
   ForkedChild(const std::function<std::string()>& work, double cpu_seconds);
   /// Kills the child if nobody has waited for it.
   ~ForkedChild();
   ForkedChild(ForkedChild&& other) noexcept;
   ForkedChild& operator=(ForkedChild&& other) = delete;
 
-  /// Waits until the child has ended. To be called once.
+  /// Waits until the child has ended. It must be called only once.
   ForkedResult wait();
 
  private:

@@ -5,14 +5,14 @@
 
 namespace semigeo::engine {
 
-/// Is told what the engine does; the engine itself never prints. Calls come from any thread.
+/// Receives the events of the engine, which itself never prints. Calls come from any thread.
 class Observer {
  public:
   virtual ~Observer() = default;
   /// Is called when `amount` units of work (vertices times levels) are done.
   virtual void worked(std::int64_t amount) { (void)amount; }
-  /// Is called when a part of a computation has ended. `stretch` is its name, `seconds` is the time
-  /// on the clock, `cpu_seconds` that of all the process's threads together.
+  /// Is called when a part of a computation has ended. `stretch` is its name, `seconds` the time
+  /// on the clock, and `cpu_seconds` the CPU time of all threads of the process together.
   virtual void timed(std::string_view stretch, double seconds, double cpu_seconds) {
     (void)stretch;
     (void)seconds;

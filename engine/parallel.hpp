@@ -14,7 +14,7 @@ struct IndexRange {
 
 /// Runs index ranges and tasks on a bounded set of threads. All parallelism goes through here, so
 /// that the library behind it can be exchanged (oneTBB, or std::thread where a sanitizer must see
-/// every synchronisation). Thread-safe; may be used from inside its own tasks.
+/// every synchronisation). The class is thread-safe, and its own tasks may use it.
 class Workers {
  public:
   /// Uses at most `threads` threads at once, including the caller's; 0 means one for each available
@@ -38,6 +38,7 @@ class Workers {
   class Group {
    public:
     virtual ~Group() = default;
+    /// Adds a task. Tasks call it, too.
     virtual void run(std::function<void()> task) = 0;
   };
   /// Calls `start` with a group and returns when every task of the group has ended.

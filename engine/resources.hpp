@@ -10,8 +10,9 @@ struct Amount {
   std::uint64_t bytes = 0;
 };
 
-/// Decides what may run side by side. Not thread-safe. The caller chooses what to ask for next: if
-/// it goes on with small jobs whenever a large one is refused, the large one waits for long.
+/// Decides what may run side by side. The class is not thread-safe. The caller chooses what to ask
+/// for next: if it goes on with small jobs whenever a large one is refused, the large one waits for
+/// long.
 class Resources {
  public:
   explicit Resources(Amount total) : total_(total) {}

@@ -6,14 +6,15 @@
 
 namespace semigeo::engine {
 
-/// What a command may take before it is killed.
+/// Holds the limits at which a command is killed.
 struct CommandBounds {
   double seconds = 60;                       ///< Time on the clock.
   std::size_t bytes = std::size_t{1} << 26;  ///< Number of bytes of output.
 };
 
-/// How a command ended, and what it printed.
+/// Tells how a command ended, and what it printed.
 struct CommandResult {
+  /// The bound that a command exceeded.
   enum class Bound { kNone, kSeconds, kBytes };
   std::string text;               ///< Standard output and standard error as they came.
   int exit_code = 0;              ///< -1 if a signal ended it.
@@ -24,7 +25,7 @@ struct CommandResult {
 /// program; PATH is not searched. Its standard input is empty. The end is when nobody holds the
 /// program's output any more and it has ended itself. What takes longer or prints more is killed
 /// with its process group, and the result says so; text up to there is kept. Throws
-/// std::system_error if the program cannot be started. Thread-safe.
+/// std::system_error if the program cannot be started. The function is thread-safe.
 CommandResult run_command(const std::vector<std::string>& arguments, const CommandBounds& bounds);
 
 }  // namespace semigeo::engine

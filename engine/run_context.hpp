@@ -7,11 +7,11 @@
 
 namespace semigeo::engine {
 
-/// Gives a computation its surroundings: threads, somebody to tell, and the wish that it stop.
+/// Holds what a computation needs besides its data.
 struct RunContext {
-  Workers& workers;
-  Observer& observer;
-  std::stop_token stop;
+  Workers& workers;      ///< The threads that it may use.
+  Observer& observer;    ///< Receives the events of the computation.
+  std::stop_token stop;  ///< Tells whether the computation should stop.
 };
 
 }  // namespace semigeo::engine

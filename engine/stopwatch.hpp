@@ -8,7 +8,7 @@
 
 namespace semigeo::engine {
 
-/// Tells an observer at its end how long the scope that holds it took.
+/// Measures the time of the scope that holds it, and reports it to an observer at the end.
 class Stopwatch {
  public:
   /// Begins to measure. `stretch` and the observer must outlive this object.

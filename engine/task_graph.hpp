@@ -15,8 +15,11 @@ namespace semigeo::engine {
 /// is skipped, and the rest goes on.
 class TaskGraph {
  public:
+  /// Names a task of the graph: its place in the order of adding.
   using Task = std::int32_t;
+  /// The state of a task at the end.
   enum class State { kDone, kFailed, kSkipped };
+  /// Tells how a task ended.
   struct Outcome {
     State state = State::kSkipped;
     std::exception_ptr error;  ///< What a failed task threw.

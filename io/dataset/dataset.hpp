@@ -24,8 +24,8 @@ struct LevelInfo : LevelAttributes {
 };
 
 /// Reads a dataset (docs/formats/dataset.md). Every failure is an Error that names the file and the
-/// object. Sizes are checked against what the file holds before anything is allocated. One thread
-/// at a time.
+/// object. Sizes are checked against what the file holds before anything is allocated. Only one
+/// thread may use it at a time.
 class Dataset {
  public:
   /// Opens a dataset for reading only. Throws Error on other formats, other versions, and
@@ -66,7 +66,7 @@ class Dataset {
 
   /// Reads everything: every chunk against its checksum, all of it against the digest, every level
   /// for completeness, /selection against the levels, /VTKHDF for conformance. Throws Error on the
-  /// first fault. Memory: one chunk.
+  /// first fault. It keeps one chunk in memory.
   void verify() const;
 
  private:
@@ -85,16 +85,16 @@ class Dataset {
   bool filled_ = false;
 };
 
-/// What the root of a dataset says about where it comes from.
+/// Holds what the root of a dataset says about its origin.
 struct DatasetOrigin {
-  std::string job_key;
+  std::string job_key;          ///< Hash of all that the dataset depends on.
   std::string input_xxh3;       ///< XXH3_128 of the scan that it was made of.
   std::string parameters_json;  ///< Parameters that it was made with, as the text of the file.
   std::string creator_version;  ///< Version of the program that made it.
 };
 
-/// Reads the origin of a dataset: a few kB, which is what a look at the whole archive can afford
-/// for every file. Throws Error if the file is absent, unreadable, of another format or version, or
+/// Reads the origin of a dataset. Only a few kB are read, so that all files of an archive can be
+/// looked at. Throws Error if the file is absent, unreadable, of another format or version, or
 /// incomplete.
 DatasetOrigin read_origin(const std::filesystem::path& path);
 

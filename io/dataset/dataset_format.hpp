@@ -9,14 +9,16 @@
 
 namespace semigeo::io {
 
-// What the writer and the reader of a dataset agree on; docs/formats/dataset.md is its description.
+// The format of a dataset, for its writer and its reader. docs/formats/dataset.md describes it.
 
+/// The version of the format.
 inline constexpr std::int64_t kDatasetFormatVersion = 4;
+/// The words by which a dataset is recognised.
 inline constexpr FileFormat kDatasetFormat = {.name = "semigeo-dataset",
                                               .version = kDatasetFormatVersion,
                                               .noun = "dataset",
                                               .remedy = "give a file that `semigeo run` made"};
-/// Levels have numbers of three digits.
+/// The largest number of levels, because the number of a level has three digits.
 inline constexpr int kMostLevels = 1000;
 
 /// The attributes of one level. Lengths are in length_unit.
@@ -26,8 +28,8 @@ struct LevelAttributes {
   double scale = 0;            ///< True sigma. It increases strictly from level to level.
   double mean_edge_length = 0;
   std::int64_t parts = 0;  ///< Number of connected parts.
-  double shortest_side =
-      0;  ///< No side and no height of a triangle is shorter; 0 if nothing saw to that.
+  /// No side and no height of a triangle is shorter; 0 if the level was not remeshed.
+  double shortest_side = 0;
   kernels::RemeshCounts remeshed = {};  ///< What remeshing did to the level before.
 };
 
@@ -36,6 +38,7 @@ struct LevelCount {
   const char* name;
   std::int64_t kernels::RemeshCounts::*count;
 };
+/// All counts of remeshing that are attributes.
 inline constexpr std::array<LevelCount, 7> kLevelCounts = {{
     {"flipped", &kernels::RemeshCounts::flipped},
     {"split", &kernels::RemeshCounts::split},
@@ -62,6 +65,7 @@ struct LevelArray {
   bool connectivity;  ///< Levels share it until one brings its own.
   Presence presence;
 };
+/// All arrays of a level.
 inline constexpr std::array<LevelArray, 14> kLevelArrays = {{
     {"points", ElementType::kFloat32, 3, false, false, Presence::kAlways},
     {"normals", ElementType::kFloat32, 3, false, false, Presence::kAlways},

@@ -15,7 +15,7 @@ namespace semigeo::io {
 
 struct DatasetHeader;  // io/dataset/dataset_header.hpp
 
-/// What levels share while their connectivity stays the same.
+/// Holds what levels share while their connectivity stays the same.
 struct EncodedConnectivity {
   EncodedArray triangles;      ///< int64 (F, 3).
   EncodedArray source_vertex;  ///< int64 (N): the vertex of level 0, or -1.
@@ -33,7 +33,7 @@ struct EncodedPrincipal {
   EncodedArray direction_2;
 };
 
-/// What each level has of its own.
+/// Holds the fields of one level.
 struct EncodedFields {
   EncodedArray points;              ///< float32 (N, 3), relative to the header's origin
   EncodedArray normals;             ///< float32 (N, 3)

@@ -12,8 +12,8 @@
 
 namespace semigeo::io {
 
-// Features and contours of a level in its tables `features`, `contours` and `contour_points`;
-// docs/formats/dataset.md is their description.
+// The tables `features`, `contours` and `contour_points` of a level. docs/formats/dataset.md
+// describes them.
 
 using kernels::kContourKinds;
 using kernels::torsion_of;
@@ -21,10 +21,11 @@ using kernels::torsion_of;
 /// Counts features and contours of each kind. They are attributes of the level, because the tables
 /// hold all kinds.
 struct FeatureCounts {
-  std::array<std::int64_t, kernels::kFeatureKinds> of_kind = {};
-  std::array<std::int64_t, kContourKinds> contours = {};
-  std::array<double, kContourKinds> contour_length = {};
+  std::array<std::int64_t, kernels::kFeatureKinds> of_kind = {};  ///< Number of features.
+  std::array<std::int64_t, kContourKinds> contours = {};          ///< Number of contours.
+  std::array<double, kContourKinds> contour_length = {};  ///< Length of contours, in length units.
 
+  /// Returns the number of features of all kinds.
   std::int64_t total() const;
 };
 
@@ -73,6 +74,7 @@ struct EncodedFeatures {
   FeatureCounts counts;
 };
 
+/// Returns a view of the rows of a table.
 ArrayView array_of(std::span<const FeatureRow> rows);
 ArrayView array_of(std::span<const ContourRow> rows);
 ArrayView array_of(std::span<const ContourPointRow> rows);

@@ -12,12 +12,13 @@ enum class Chosen {
   kSlope,  ///< The curve of the counts, where it is flattest.
   kOption  ///< The user.
 };
+/// Returns "slope" or "option", as the file names it.
 const char* name_of(Chosen chosen);
 
 /// The level at which a scan is recognised, and why. L is the number of levels.
 struct Selection {
-  std::vector<std::int64_t>
-      feature_counts;            ///< (L) Number of features of each level, of all kinds together.
+  /// (L) Number of features of each level, of all kinds together.
+  std::vector<std::int64_t> feature_counts;
   std::vector<double> smoothed;  ///< (L) The counts, smoothed along the levels.
   std::int64_t level = 0;
   Chosen chosen = Chosen::kSlope;

@@ -31,6 +31,7 @@ struct VtkhdfPointArray {
   int columns;
   Presence presence;
 };
+/// All arrays of /VTKHDF/PointData.
 inline constexpr std::array<VtkhdfPointArray, 11> kVtkhdfPointArrays = {{
     {"Normals", "normals", ElementType::kFloat32, 3, Presence::kAlways},
     {"gaussian_curvature", "gaussian_curvature", ElementType::kFloat32, 1, Presence::kAlways},
@@ -52,12 +53,14 @@ inline constexpr std::array<VtkhdfPointArray, 11> kVtkhdfPointArrays = {{
 /// Returns the arrays that a step has.
 std::vector<VtkhdfPointArray> point_arrays_of(const VtkhdfStep& step);
 
-/// Everything that /VTKHDF holds, planned before any of it is written.
+/// Holds all that is going to be written to /VTKHDF.
 struct VtkhdfLayout {
+  /// Describes a table that is written with its values.
   struct Table {
     int columns = 1;
     std::vector<std::int64_t> values;  ///< Row after row.
   };
+  /// Describes a virtual dataset: a view of arrays of the levels.
   struct View {
     ElementType type = ElementType::kFloat32;
     int columns = 1;
@@ -79,8 +82,8 @@ VtkhdfLayout vtkhdf_layout(std::span<const VtkhdfStep> steps);
 /// Writes the group /VTKHDF; the arrays that the views show must exist.
 void write_vtkhdf(DigestedFile& file, const VtkhdfLayout& layout, Compression compression);
 
-/// Throws Error, which names the object, if a rule of VTKHDF is broken, or of how VTK's reader
-/// takes it. Reads the offsets and Polygons/Offsets, none of the big arrays.
+/// Throws Error, which names the object, if /VTKHDF breaks a rule of the format or of VTK's reader.
+/// It reads the offsets and Polygons/Offsets, but none of the big arrays.
 void check_vtkhdf(const Hdf5File& file);
 
 }  // namespace semigeo::io

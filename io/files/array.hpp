@@ -10,11 +10,11 @@
 
 namespace semigeo::io {
 
-/// Rows somewhere in memory, and how a dataset stores them: its shape is (rows) if `columns` is 1,
-/// and (rows, columns) otherwise. A view owns nothing: what it points to must outlive it. The types
-/// may differ for int32 -> int64 and float64 -> float32, which are converted chunk by chunk, so
-/// that no second copy of an array is ever in memory. Records in memory may end in padding, which
-/// is not stored.
+/// Refers to rows in memory, and says how a file stores them. The shape is (rows) if `columns` is
+/// 1, and (rows, columns) otherwise. A view owns nothing: what it points to must outlive it. The
+/// types may differ for int32 -> int64 and float64 -> float32, which are converted chunk by chunk,
+/// so that no second copy of an array is ever in memory. Records in memory may end in padding,
+/// which is not stored.
 struct ArrayView {
   ElementType memory_type = ElementType::kFloat32;
   ElementType stored_type = ElementType::kFloat32;
@@ -46,21 +46,28 @@ ArrayView rows_of(std::span<const Row> values, ElementType memory, ElementType s
 
 }  // namespace detail
 
-/// Returns a view of the values, one column. `stored` is the type that they are stored as.
+// Each of the functions that follow returns a view of its values. Scalars make one column. `stored`
+// is the type that they are stored as.
+
+/// Views (N) as float32.
 inline ArrayView array_of(std::span<const float> values, RowOrder order = {}) {
   return detail::rows_of(values, ElementType::kFloat32, ElementType::kFloat32, 1, order);
 }
+/// Views (N) as float64, or narrowed to float32.
 inline ArrayView array_of(std::span<const double> values,
                           ElementType stored = ElementType::kFloat64, RowOrder order = {}) {
   return detail::rows_of(values, ElementType::kFloat64, stored, 1, order);
 }
+/// Views (N) as int32, or widened to int64.
 inline ArrayView array_of(std::span<const std::int32_t> values,
                           ElementType stored = ElementType::kInt32, RowOrder order = {}) {
   return detail::rows_of(values, ElementType::kInt32, stored, 1, order);
 }
+/// Views (N) as int64.
 inline ArrayView array_of(std::span<const std::int64_t> values, RowOrder order = {}) {
   return detail::rows_of(values, ElementType::kInt64, ElementType::kInt64, 1, order);
 }
+/// Views (N) as uint8.
 inline ArrayView array_of(std::span<const std::uint8_t> values, RowOrder order = {}) {
   return detail::rows_of(values, ElementType::kUint8, ElementType::kUint8, 1, order);
 }

@@ -9,8 +9,8 @@ namespace semigeo::io {
 /// Returns the name of this host in temporary files and locks: "localhost" if it has no name.
 std::string host_name();
 
-/// Says whether a folder is forced to the disk, which makes the names in it last. kLeft: another
-/// file of the folder gets its name next, and both names last together.
+/// Says whether a folder is forced to the disk, so that the names in it survive a power cut. kLeft
+/// is for a file after which another file of the folder gets its name and syncs the folder.
 enum class Folder { kSynced, kLeft };
 
 /// A file that appears under its final name whole or not at all. It is written under a temporary
@@ -19,7 +19,7 @@ enum class Folder { kSynced, kLeft };
 /// meet. Within a process one final name must have one writer at a time.
 class AtomicFile {
  public:
-  /// Composes the temporary name and removes a leftover that has it. Creates nothing.
+  /// Composes the temporary name, and removes a file that has it already. Creates nothing.
   explicit AtomicFile(std::filesystem::path final_path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -35,8 +35,9 @@ class AtomicFile {
   /// Syncs, if that has not been done, renames to the final name (replacing what stood there), and
   /// syncs the folder if asked to.
   void commit(Folder folder = Folder::kSynced);
-  /// Renames without any sync: a hundred times as fast, but after a power cut the file may have any
-  /// bytes under its final name. For what is checked before it is used, and easily made again.
+  /// Renames without any sync. That is a hundred times as fast, but after a power cut the file may
+  /// hold any bytes under its final name. It is for files that are checked before use and easily
+  /// made again.
   void commit_unsynced();
 
  private:

@@ -27,11 +27,13 @@ struct BinaryFormat {
 /// Collects numbers and texts for the head of a file, one after the other.
 class HeadWriter {
  public:
+  /// Adds a number.
   template <typename Number>
   void number(Number value) {
     static_assert(std::is_arithmetic_v<Number>);
     numbers(std::span<const Number>(&value, 1));
   }
+  /// Adds numbers, without their count.
   template <typename Number>
   void numbers(std::span<const Number> values) {
     bytes_.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
@@ -41,6 +43,7 @@ class HeadWriter {
     number(static_cast<std::uint32_t>(text.size()));
     bytes_.append(text);
   }
+  /// Returns all that was added.
   const std::string& bytes() const { return bytes_; }
 
  private:
@@ -50,7 +53,9 @@ class HeadWriter {
 /// Writes a binary file: data first, the head last. Every failure is an Error.
 class BinaryWriter {
  public:
+  /// Begins a file, which has its name only when it is finished.
   BinaryWriter(const std::filesystem::path& path, const BinaryFormat& format);
+  /// Appends bytes to the data.
   void data(std::span<const std::byte> bytes);
   /// Ends the file, which then appears under its name.
   void finish(const HeadWriter& head);
@@ -63,14 +68,16 @@ class BinaryWriter {
   OutputFile file_;
 };
 
-/// Reads a binary file. Opening it checks everything but the data. Every failure is an Error.
-/// `read` may be called by several threads at once.
+/// Reads a binary file. Every failure is an Error. `read` may be called by several threads at once.
 class BinaryFile {
  public:
+  /// Opens a file, and checks everything but the data.
   BinaryFile(const std::filesystem::path& path, const BinaryFormat& format);
 
   const std::filesystem::path& path() const { return file_.path(); }
+  /// Returns the XXH3_64 of the head.
   std::uint64_t head_hash() const { return head_hash_; }
+  /// Returns the number of bytes of the data.
   std::uint64_t data_bytes() const { return data_bytes_; }
 
   // These read the head from its beginning to its end. They throw Error if it ends too early.
@@ -92,11 +99,12 @@ class BinaryFile {
     numbers(std::span<Number>(values));
     return values;
   }
+  /// Reads a text that HeadWriter::text has added.
   std::string text();
-  /// Throws Error if there is more of the head; otherwise forgets it.
+  /// Ends the reading of the head. Throws Error if there is more of it.
   void end_of_head();
 
-  /// Reads a piece of the data, whose first byte is 0. Nothing checks what it says.
+  /// Reads a piece of the data; `offset` counts from its first byte. The content is not checked.
   std::vector<std::byte> read(std::uint64_t offset, std::uint64_t bytes) const;
 
   /// Throws the Error for a problem at a place of this file.

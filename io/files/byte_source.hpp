@@ -16,7 +16,7 @@ class GzipStream;
 
 /// Reads a file's bytes from front to back through one fixed window. A gzip file (recognised by its
 /// first bytes; several members in a row are one stream) is decompressed on the way. Memory does
-/// not grow with the file. Damaged or cut gzip data is an `Error`. Not thread-safe.
+/// not grow with the file. Damaged or cut gzip data is an `Error`. The class is not thread-safe.
 class ByteSource {
  public:
   /// The largest number of bytes that can be looked at without consuming.
@@ -61,7 +61,7 @@ class ByteSource {
   std::unique_ptr<char[]> window_;
   const char* cursor_ = nullptr;
   const char* end_ = nullptr;
-  std::int64_t window_position_ = 0;  // of window_[0] in the stream
+  std::int64_t window_position_ = 0;  // position of window_[0] in the stream
   bool ended_ = false;
 };
 

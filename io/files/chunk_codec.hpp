@@ -58,19 +58,20 @@ struct EncodedArray {
 ArrayShape shape_of(const ArrayView& view, Compression compression);
 
 /// Encodes chunk `index` of shape_of(view, compression) to the bytes that HDF5's own filters would
-/// accept. Pure and thread-safe. Throws std::invalid_argument on an unsupported conversion.
+/// accept. The function is pure and thread-safe. Throws std::invalid_argument on an unsupported
+/// conversion.
 EncodedChunk encode_chunk(const ArrayView& view, std::int64_t index, Compression compression);
 
-/// Encodes rows that already have their stored form; at most chunk_rows of them. Pure and
-/// thread-safe.
+/// Encodes rows that already have their stored form; at most chunk_rows of them. The function is
+/// pure and thread-safe.
 EncodedChunk encode_rows(const ArrayShape& shape, std::span<const std::byte> rows);
 
 /// Encodes every chunk, one after the other.
 EncodedArray encode_array(const ArrayView& view, Compression compression);
 
-/// Undoes encode_rows: decodes the whole chunk, padding included, into `rows`, whose size must be
-/// shape.chunk_bytes(). Returns false if the checksum or the compressed stream is wrong.
-/// Thread-safe.
+/// Decodes what encode_rows returns. The whole chunk, padding included, is written to `rows`, whose
+/// size must be shape.chunk_bytes(). Returns false if the checksum or the compressed stream is
+/// wrong. The function is thread-safe.
 bool decode_chunk(const ArrayShape& shape, std::span<const std::byte> bytes,
                   std::uint32_t filter_mask, std::span<std::byte> rows);
 

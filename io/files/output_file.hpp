@@ -42,9 +42,9 @@ class OutputFile {
     add(digits.data(), static_cast<std::size_t>(end - digits.data()));
   }
 
-  /// Gives the file its name. To be called last.
+  /// Gives the file its name. It must be called last.
   void commit();
-  /// Gives the file its name as AtomicFile::commit_unsynced does. To be called last.
+  /// Gives the file its name as AtomicFile::commit_unsynced does. It must be called last.
   void commit_unsynced();
 
  private:
@@ -61,12 +61,12 @@ class OutputFile {
   std::vector<char> buffer_;
 };
 
-/// The text that every PLY which semigeo writes begins with.
+/// The text at the beginning of every PLY that semigeo writes.
 inline constexpr const char* kPlyBegin =
     "ply\nformat binary_little_endian 1.0\ncomment written by semigeo\n";
 
-/// Places what is stored relative to an origin: coordinates are doubles if the origin is not zero,
-/// which keeps map coordinates exact, and the floats as they are otherwise.
+/// Adds the origin to points that are stored relative to it. The sums are doubles if the origin is
+/// not zero, which keeps map coordinates exact; otherwise the floats stay as they are.
 class Placement {
  public:
   explicit Placement(const std::array<double, 3>& origin)

@@ -31,6 +31,7 @@ struct VirtualPiece {
 
 /// An entry of a group.
 struct Hdf5Link {
+  /// The kinds of objects.
   enum class Kind { kGroup, kArray, kOther };
   std::string name;
   Kind kind;
@@ -47,6 +48,7 @@ struct Hdf5Attribute {
 /// Owns an HDF5 identifier (hid_t, whose header only hdf5_library.hpp includes).
 class Hdf5Handle {
  public:
+  /// Closes an identifier. Returns a negative number on failure.
   using Close = int (*)(std::int64_t);
   Hdf5Handle() = default;
   Hdf5Handle(std::int64_t id, Close closer) : id_(id), close_(closer) {}
@@ -87,28 +89,38 @@ class Hdf5File {
 
   const std::filesystem::path& path() const { return shown_as_; }
 
+  /// Creates a group, whose parent must exist.
   void create_group(const std::string& path);
+  /// Writes a whole array.
   void write_array(const std::string& path, const EncodedArray& array);
   class Growing;  // io/hdf5/hdf5_array.hpp
   /// Begins an array whose chunks come one by one; others may be written in between.
   Growing begin_array(const std::string& path, const ArrayShape& shape);
+  /// Writes a virtual array, whose rows are those of all pieces, one after the other.
   void write_virtual(const std::string& path, ElementType type, int columns,
                      std::span<const VirtualPiece> pieces);
+  /// Writes an attribute of an object.
   void write_attribute(const std::string& object, const std::string& name,
                        const AttributeValue& value);
+  /// Gives the object `existing` the further name `path`: a hard link.
   void link(const std::string& existing, const std::string& path);
+  /// Hands all that was written to the operating system.
   void flush();
-  /// Flushes and closes the file; nothing else may be called afterwards. The destructor closes too,
-  /// but silently.
+  /// Flushes and closes the file. Nothing else may be called afterwards. The destructor closes the
+  /// file as well, but reports no failure.
   void close();
 
+  /// Returns whether there is an object of this path.
   bool has(const std::string& path) const;
+  /// Returns whether an object has an attribute of this name.
   bool has_attribute(const std::string& object, const std::string& name) const;
   /// Returns the entries of a group, by name.
   std::vector<Hdf5Link> links(const std::string& group) const;
+  /// Returns the address of an object, which is the same for every hard link to it.
   std::uint64_t address(const std::string& path) const;
-  /// Returns all attributes of an object, by name. Looking at one of them again costs nothing.
+  /// Returns all attributes of an object, by name. They are kept in memory.
   const std::vector<Hdf5Attribute>& attributes(const std::string& object) const;
+  /// Reads an attribute. Throws Error if it is missing or of a type that is not used.
   AttributeValue read_attribute(const std::string& object, const std::string& name) const;
   /// Reads an attribute that must have this type. Throws Error if it has another.
   template <typename Value>
@@ -121,14 +133,16 @@ class Hdf5File {
   std::string attribute_type(const std::string& object, const std::string& name) const;
 
   class Array;  // io/hdf5/hdf5_array.hpp
-  /// Opens an array for reading. What it is, and all of a small array, is looked at once: opening
-  /// it again costs nothing.
+  /// Opens an array for reading. Its description is kept in memory, and the rows of a compact array
+  /// as well.
   Array open_array(const std::string& path) const;
+  /// Returns the shape of an array.
   ArrayShape shape_of(const std::string& path) const { return look_at(path).shape; }
+  /// Returns whether an array is virtual.
   bool is_virtual(const std::string& path) const { return look_at(path).is_virtual; }
 
   /// Reads a whole array through HDF5's own filters and virtual mappings, as little-endian rows.
-  /// For tests: it is slow, and believes the file about its size.
+  /// It is for tests: it is slow, and does not check the size that the file states.
   std::vector<std::byte> read_through_library(const std::string& path) const;
 
   /// Throws the Error for a problem at a place of this file.
@@ -140,12 +154,12 @@ class Hdf5File {
   [[noreturn]] void fail(const std::string& place, const std::string& action) const;
   std::int64_t checked(std::int64_t result, const std::string& place, const char* action) const;
   std::int64_t id() const;
-  /// Returns the object, open until another one is asked for: most calls are about that of the one
-  /// before.
+  /// Returns an object, which stays open until another one is opened, since most calls concern the
+  /// same object as the call before.
   std::int64_t opened(const std::string& path) const;
   struct Entry {
-    std::int64_t group;  // of an object, open
-    const char* name;    // of the object in it; lives as long as the path
+    std::int64_t group;  // the open group that has the object
+    const char* name;    // name of the object in the group; valid as long as the path
   };
   Entry entry(const std::string& path) const;
   std::int64_t type_of(ElementType type) const;
@@ -158,8 +172,8 @@ class Hdf5File {
   struct KnownArray {
     ArrayShape shape;
     bool is_virtual = false;
-    std::vector<VirtualPiece> pieces;  // of a virtual one
-    std::vector<std::byte> rows;       // of a compact one
+    std::vector<VirtualPiece> pieces;  // pieces of a virtual array
+    std::vector<std::byte> rows;       // rows of a compact array
   };
   const KnownArray& look_at(const std::string& path) const;
   KnownArray described(const std::string& path, std::int64_t array) const;
@@ -172,10 +186,10 @@ class Hdf5File {
   Hdf5Handle handle_;
   std::filesystem::path shown_as_;
   bool writing_ = false;
-  // What has been looked at or written, neither of which changes.
+  // Descriptions of objects that were read or written. They do not change any more.
   mutable std::map<std::string, KnownArray> arrays_;
   mutable std::map<std::string, std::vector<Hdf5Attribute>> attributes_;
-  mutable std::map<ElementType, Hdf5Handle> records_;  // types of theirs
+  mutable std::map<ElementType, Hdf5Handle> records_;  // HDF5 types of records
   mutable std::string opened_path_;
   mutable Hdf5Handle opened_;  // after handle_, so that it is closed before
 };

@@ -15,9 +15,10 @@ class Hdf5File::Growing {
  public:
   const ArrayShape& shape() const { return known_->shape; }
   const std::string& path() const { return path_; }
-  void write_chunk(
-      const EncodedChunk& chunk);  ///< Writes the next chunk, or all rows of a compact array.
-  void close();                    ///< Ends the array. To be called after the last chunk.
+  /// Writes the next chunk, or all rows of a compact array.
+  void write_chunk(const EncodedChunk& chunk);
+  /// Ends the array. It must be called after the last chunk.
+  void close();
 
  private:
   friend class Hdf5File;
@@ -35,16 +36,18 @@ class Hdf5File::Growing {
 /// An open array of a file, which must outlive it.
 class Hdf5File::Array {
  public:
-  /// Returns the shape. For a virtual array only type, rows and columns mean anything.
+  /// Returns the shape. For a virtual array only type, rows and columns are valid.
   const ArrayShape& shape() const { return known_->shape; }
   const std::string& path() const { return path_; }
   const Hdf5File& file() const { return *file_; }
   bool is_virtual() const { return known_->is_virtual; }
+  /// Returns whether the array has attributes.
   bool has_attributes() const;
   /// Returns the number of bytes of all its chunks in the file.
   std::int64_t stored_bytes() const;
   /// Reads a chunk as it lies in the file, without its hash.
   EncodedChunk read_chunk(std::int64_t index) const;
+  /// Returns the pieces of a virtual array.
   const std::vector<VirtualPiece>& virtual_pieces() const { return known_->pieces; }
 
  private:

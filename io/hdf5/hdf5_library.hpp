@@ -15,15 +15,17 @@ namespace semigeo::io {
 
 static_assert(std::is_same_v<hid_t, std::int64_t> && std::is_same_v<herr_t, int>);
 
-/// Prepares HDF5 in this thread: it prints no errors and has no exit handler. To be called before
-/// any other call of the library.
+/// Prepares HDF5 in this thread, so that it prints no errors and has no exit handler. It must be
+/// called before any other function of the library.
 void prepare_library();
 
 /// Returns why the last call failed. Every call of the library forgets it.
 std::string innermost_reason();
 
+/// The rows and columns of an array.
 using Extent = std::array<hsize_t, 2>;
 
+/// Returns an extent as HDF5 wants it.
 inline Extent extent(std::int64_t rows, int columns) {
   return {static_cast<hsize_t>(rows), static_cast<hsize_t>(columns)};
 }

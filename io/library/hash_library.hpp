@@ -13,7 +13,7 @@
 
 namespace semigeo::io {
 
-/// What is known about a model without reading it.
+/// Holds what is known about a model before it is read.
 struct ModelInfo {
   std::string name;
   std::string digest;  ///< Digest of its dataset.
@@ -39,12 +39,15 @@ class HashLibrary {
   /// Returns the parameters with which triplets were made. A text of the file that is not JSON
   /// is a string here.
   const nlohmann::json& parameters() const;
-  const std::string& digest() const;  ///< Content digest, 32 hexadecimal digits.
+  /// Returns the content digest: 32 hexadecimal digits.
+  const std::string& digest() const;
+  /// Returns what is known of each model, sorted by name.
   const std::vector<ModelInfo>& models() const;
 
   /// Returns (kTripletCells + 1) numbers: postings of cell c are those from cells[c] to cells[c +
   /// 1].
   std::span<const std::uint64_t> cells() const;
+  /// Returns the number of postings of all models.
   std::int64_t posting_count() const;
   /// Returns the number of postings in a block; the last may be shorter. Block b begins with
   /// posting b * block_size().
@@ -57,8 +60,8 @@ class HashLibrary {
   kernels::RecognitionModel read_model(std::int64_t model) const;
 
   /// Reads everything against checksums and the digest, and checks order, ranges and indices too.
-  /// Throws Error on the first fault. Memory: some chunks. Threads other than those of for_each
-  /// wait meanwhile.
+  /// Throws Error on the first fault. It keeps several chunks in memory. Threads other than those
+  /// of for_each wait meanwhile.
   void verify(const ForEach& for_each = {}) const;
 
  private:

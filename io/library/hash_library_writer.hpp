@@ -15,12 +15,12 @@ namespace semigeo::io {
 
 /// Says where a library comes from.
 struct LibraryHeader {
-  nlohmann::json parameters =
-      nlohmann::json::object();  ///< Parameters with which its triplets were made.
-  std::string job_key;           ///< Hash of everything that the content depends on.
+  /// Parameters with which its triplets were made.
+  nlohmann::json parameters = nlohmann::json::object();
+  std::string job_key;  ///< Hash of everything that the content depends on.
 };
 
-/// Says how much of everything a library will have.
+/// Holds the sizes of a library that is going to be written.
 struct LibrarySizes {
   std::int64_t postings = 0;
   std::int64_t models = 0;
@@ -30,9 +30,10 @@ struct LibrarySizes {
 };
 
 /// Writes a library (docs/formats/library.md), first its postings, block by block, then its models.
-/// Equal content gives equal bytes. Memory: a few chunks, the index and about 200 bytes for each
-/// model. The file appears under its final name when it is whole and verified. Wrong use is
-/// std::invalid_argument, a failure of the disk an Error. One thread at a time.
+/// Equal content gives equal bytes. It keeps a few chunks, the index and about 200 bytes for each
+/// model in memory. The file appears under its final name when it is whole and verified. Throws
+/// std::invalid_argument on wrong use, and Error if the disk fails. Only one thread may use it at a
+/// time.
 class HashLibraryWriter {
  public:
   HashLibraryWriter(const std::filesystem::path& final_path, const LibraryHeader& header,

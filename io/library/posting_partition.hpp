@@ -12,7 +12,7 @@
 
 namespace semigeo::io {
 
-/// What a partition says about itself.
+/// Describes a partition.
 struct PartitionHeader {
   std::string job_key;
   ShapeRange shapes;
@@ -25,7 +25,7 @@ std::uint64_t runs_hash(std::span<const std::uint64_t> content_hashes);
 
 /// Writes the postings of a range of shapes (docs/formats/library.md), piece by piece. The file
 /// appears under its name when it is whole, unless the power is cut meanwhile: what is removed as
-/// soon as the library is made is not forced to the disk. Memory: two blocks.
+/// soon as the library is made is not forced to the disk. It keeps two blocks in memory.
 class PostingPartitionWriter {
  public:
   PostingPartitionWriter(const std::filesystem::path& path, PartitionHeader header);
@@ -46,7 +46,8 @@ class PostingPartitionWriter {
 };
 
 /// Reads a partition: its head at once, its postings block by block, each against a checksum. Every
-/// failure is an Error that names the file and what is wrong with it. Thread-safe.
+/// failure is an Error that names the file and what is wrong with it. Several threads may use it at
+/// once.
 class PostingPartition {
  public:
   explicit PostingPartition(const std::filesystem::path& path);

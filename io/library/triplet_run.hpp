@@ -22,9 +22,9 @@ void write_triplet_run(const std::filesystem::path& path, const std::string& job
                        const kernels::RecognitionModel& model,
                        std::span<const kernels::Triplet> triplets);
 
-/// Reads a run. Opening it reads some 5 kB; the triplets of each shape and the model are checked
+/// Reads a run. Opening it reads about 5 kB. The triplets of each shape, and the model, are checked
 /// against checksums of their own when they are read. Every failure is an Error that names the file
-/// and what is wrong with it. Thread-safe.
+/// and what is wrong with it. Several threads may use it at once.
 class TripletRun {
  public:
   explicit TripletRun(const std::filesystem::path& path);
@@ -35,16 +35,22 @@ class TripletRun {
   /// Returns the XXH3_64 of the head, which has the checksums of all else: equal hashes mean equal
   /// content.
   std::uint64_t content_hash() const { return file_.head_hash(); }
+  /// Returns the number of features of the model.
   std::int64_t features() const { return features_; }
+  /// Returns the number of samples of the model.
   std::int64_t samples() const { return samples_; }
+  /// Returns the number of levels of the model.
   std::int64_t levels() const { return static_cast<std::int64_t>(model_.level_scales.size()); }
+  /// Returns the number of triplets of some shapes.
   std::int64_t triplets(const ShapeRange& shapes = {}) const {
     return offsets_[shapes.end] - offsets_[shapes.first];
   }
 
   /// Reads the triplets of some shapes, sorted by cell, then corners.
   std::vector<kernels::Triplet> read_triplets(const ShapeRange& shapes = {}) const;
+  /// Reads the model.
   kernels::RecognitionModel read_model() const { return unpack_model(read_packed_model()); }
+  /// Reads the model as it is stored.
   PackedModel read_packed_model() const;
 
  private:

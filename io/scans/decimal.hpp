@@ -7,8 +7,8 @@ namespace semigeo::io {
 /// A number that was read from a text.
 struct Decimal {
   double value = 0;
-  const char* end =
-      nullptr;  ///< Behind the last character used; the start of the text if there is none.
+  /// Behind the last character used; the start of the text if there is none.
+  const char* end = nullptr;
 };
 
 /// Reads the decimal number at the start of `text`, rounded to the nearest double: an optional sign

@@ -14,10 +14,10 @@ struct FeaturesView {
   std::span<const kernels::Feature> features;
 };
 
-// Binary little-endian PLY, or CSV with a line of names and the shortest decimals that read back as
-// the same numbers. `origin` is added to positions, which are doubles if it is not zero, else
-// floats. A file appears whole or not at all. Error when the disk fails, or when a PLY would need
-// more than 32 bits to count something.
+// These functions write binary little-endian PLY, or CSV with a line of names and the shortest
+// decimals that read back as the same numbers. `origin` is added to positions, which are doubles if
+// it is not zero, and floats otherwise. A file appears whole or not at all. They throw Error if the
+// disk fails, or if a PLY would need more than 32 bits to count something.
 
 /// Writes one table after the other, a vertex or line for each feature: x y z, nx ny nz, value,
 /// prominence, scale_free_gaussian, scale_free_mean, initial_x initial_y initial_z, kind (PLY: the

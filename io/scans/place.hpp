@@ -7,13 +7,15 @@
 
 namespace semigeo::io {
 
-/// The place in a file where a record begins: cheap to pass along, put into words only when it is
-/// needed.
+/// The place in a file where a record begins. It is cheap to pass along, and is put into words only
+/// when a message needs it.
 struct Place {
+  /// The unit in which places are counted.
   enum class Unit { kLine, kByte };
   Unit unit = Unit::kLine;
   std::int64_t number = 0;
 
+  /// Returns the place in words: "line 12".
   std::string text(const ByteSource& source) const {
     return unit == Unit::kLine ? "line " + std::to_string(number) : source.place(number);
   }

@@ -26,27 +26,34 @@ class PlyAsciiDecoder {
   PlyAsciiDecoder(ByteSource& source, const PlyHeader& header, const ScanBuilder& builder)
       : scanner_(source, {}, header.lines + 1), builder_(builder) {}
 
+  /// Begins record `index` of an element. Throws Error if the file ends.
   void begin_record(const PlyElement& element, std::int64_t index) {
     if (!scanner_.skip_to_content())
       builder_.fail_promise(plural(element), element.count, index, place());
   }
+  /// Ends the record. Throws Error if its line has more values.
   void end_record() {
     if (!scanner_.at_line_end())
       scanner_.fail("the line has more values than the header declares",
                     "correct the line or export the scan again");
   }
+  /// Returns the place of the record.
   Place place() const { return {Place::Unit::kLine, scanner_.line()}; }
 
+  /// Reads a number.
   double scalar(const PlyProperty& property) { return scanner_.number(property.name); }
+  /// Reads the length of a list. Throws Error if it is negative.
   std::int64_t length(const PlyProperty& property) {
     const std::int64_t length = scanner_.integer(property.name);
     if (length < 0) scanner_.fail("the length of list " + property.name + " is negative");
     return length;
   }
+  /// Reads the items of a list as integers, and calls receive(item) for each.
   template <typename Receiver>
   void items(const PlyProperty& property, std::int64_t length, Receiver receive) {
     for (std::int64_t i = 0; i < length; ++i) receive(scanner_.integer(property.name));
   }
+  /// Passes over a number or a list.
   void skip(const PlyProperty& property) {
     const std::int64_t words = property.count_type ? length(property) : 1;
     for (std::int64_t i = 0; i < words; ++i)
@@ -60,7 +67,7 @@ class PlyAsciiDecoder {
   const ScanBuilder& builder_;
 };
 
-/// Reads the values of a binary PLY of either byte order.
+/// Reads the values of a binary PLY of either byte order. It has the functions of PlyAsciiDecoder.
 class PlyBinaryDecoder {
  public:
   PlyBinaryDecoder(ByteSource& source, const PlyHeader& header, const ScanBuilder& builder)

@@ -14,6 +14,7 @@ enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, 
 
 /// Returns the size of a number in bytes.
 int ply_type_size(PlyType type);
+/// Returns whether the type is one of integers.
 inline bool is_integer(PlyType type) {
   return type < PlyType::kFloat32;
 }
@@ -35,11 +36,13 @@ struct PlyElement {
   /// Returns the number of bytes that a record has at least: exactly its size in binary files if it
   /// holds no list.
   std::int64_t least_bytes(bool ascii) const;
+  /// Returns whether a property is a list.
   bool has_lists() const;
 };
 
-/// What the header of a PLY says.
+/// Holds the header of a PLY.
 struct PlyHeader {
+  /// The encoding of the data behind the header.
   enum class Encoding { kAscii, kLittleEndian, kBigEndian };
   Encoding encoding = Encoding::kAscii;
   std::vector<PlyElement> elements;

@@ -11,8 +11,8 @@ namespace semigeo::io {
 /// Cuts polygons in space into triangles between their corners, oriented as the polygon is. Works
 /// in the plane of the polygon's Newell normal. Simple polygons, convex or not, come out without
 /// overlaps, also with holes joined by bridges. For polygons that cross themselves or have no area
-/// only the number of triangles is promised. Not thread-safe: an instance keeps its scratch memory
-/// for the next polygon.
+/// only the number of triangles is promised. The class is not thread-safe, because an instance
+/// keeps its working memory for the next polygon.
 class PolygonTriangulator {
  public:
   /// Returns n - 2 triangles of indices into `corners` (n >= 3), valid until the next call. Takes

@@ -34,11 +34,14 @@ class ScanBuilder {
   /// Throws the Error for a promise that the file does not keep: `found` of `promised` `what`.
   [[noreturn]] void fail_promise(std::string_view what, std::int64_t promised, std::int64_t found,
                                  Place end) const;
+  /// Throws the Error for a problem at a place of the source.
   [[noreturn]] void fail(Place place, const std::string& problem,
                          const std::string& remedy = {}) const;
 
   std::int64_t point_count() const { return static_cast<std::int64_t>(scan_.mesh.points.size()); }
 
+  /// Adds a vertex. Throws Error if a coordinate is not finite or too large, or if there are too
+  /// many vertices.
   void add_point(double x, double y, double z, Place place) {
     const double limit = limits_.max_coordinate;  // the comparisons are false for NaN
     if (!(std::abs(x) <= limit && std::abs(y) <= limit && std::abs(z) <= limit))
@@ -47,7 +50,7 @@ class ScanBuilder {
     scan_.mesh.points.emplace_back(x, y, z);
   }
 
-  /// Refuses a face of too many corners. To be called before its corners are collected.
+  /// Throws Error if a face has too many corners. It must be called before they are collected.
   void check_corner_count(std::int64_t count, Place place) const {
     if (count > kMaxCorners) fail_corner_count(place);
   }

@@ -9,7 +9,7 @@
 
 namespace semigeo::io {
 
-/// Everything that the program knows about one format of scans.
+/// Describes one format of scans.
 struct ScanFormat {
   std::string_view extension;  ///< ".ply": the end of its files' names, in lower case.
   /// Reads a source at its start that holds at least one byte, and leaves it anywhere. Throws what

@@ -29,13 +29,13 @@ struct ScanLimits {
   double max_coordinate = 1e30;              ///< Keeps areas and volumes within a double's range.
 };
 
-/// What a scan file holds.
+/// Holds the content of a scan file.
 struct Scan {
   kernels::TriangleMesh mesh;  ///< As the file lists it. An STL has three points for each triangle.
   std::string format;          ///< "PLY binary little endian", "OBJ", "STL ascii, gzip", ...
   std::int64_t polygons_triangulated = 0;  ///< Faces with more than three corners.
-  std::int64_t bytes_after_end =
-      0;  ///< Bytes that are not blank, behind all that the header promises.
+  /// Bytes that are not blank, behind all that the header promises.
+  std::int64_t bytes_after_end = 0;
   std::int64_t faces_skipped = 0;  ///< Faces with one or two corners, or none.
 };
 
@@ -48,7 +48,7 @@ struct Scan {
 /// range, no vertices, no faces (a point cloud), more than `limits`.
 ///
 /// Streams through a buffer of 1 MiB; memory is that of the mesh and never follows a promise of a
-/// header. Thread-safe for different calls.
+/// header. Several threads may call the function at once.
 Scan read_scan(const std::filesystem::path& path, const ScanLimits& limits = {});
 
 }  // namespace semigeo::io

@@ -24,7 +24,7 @@ struct FileStamp {
 /// Returns the stamp of a regular file, or nothing.
 std::optional<FileStamp> stamp_of(const std::filesystem::path& file);
 
-/// What the root of a complete dataset says about where it comes from.
+/// Holds what the root of a complete dataset says about its origin.
 struct DatasetKeys {
   std::string job_key;
   std::string input_xxh3;
@@ -45,6 +45,7 @@ class DigestCache {
  public:
   /// Returns the time in nanoseconds since 1970.
   using Clock = std::int64_t (*)();
+  /// Returns the time of the system.
   static std::int64_t system_clock();
 
   /// Makes a cache that knows nothing yet.
@@ -76,8 +77,8 @@ class DigestCache {
 
   std::filesystem::path archive_;
   Clock now_;
-  std::map<std::string, Entry>
-      entries_;       ///< The key is the path of a scan or the name of a dataset.
+  /// The key is the path of a scan or the name of a dataset.
+  std::map<std::string, Entry> entries_;
   std::string text_;  ///< Text of the archive's file.
 };
 

@@ -11,7 +11,7 @@
 
 namespace semigeo::jobs {
 
-/// What a job is expected to need.
+/// Holds what a job is expected to need.
 struct Estimate {
   double vertices = 0;
   double peak_bytes = 0;  ///< Largest use of memory, with a margin for safety.
@@ -66,7 +66,9 @@ class Estimates {
 /// most a few hundred jobs of each format, however long the journal is.
 class EstimateLearner {
  public:
+  /// Takes the numbers of a job.
   void add(const JobEnded& job);
+  /// Returns the rates that were learned.
   Estimates learned() const;
 
  private:

@@ -19,7 +19,7 @@ struct ProcessIdentity {
 /// Returns the identity of the calling process.
 ProcessIdentity this_process();
 
-/// What is known about the life of a process.
+/// Says whether a process still runs, as far as that is known.
 enum class Life { kAlive, kDead, kOnAnotherHost };
 
 /// Returns whether the process still runs. A process that has ended, but for which its parent has

@@ -4,7 +4,7 @@
 
 namespace semigeo::jobs {
 
-/// Returns the present time as "2024-05-31T21:00:00Z".
+/// Returns the current time as "2024-05-31T21:00:00Z".
 std::string utc_time();
 /// Returns the seconds from such a time to now, or 0 if the text is no time.
 double seconds_since(const std::string& utc_time);

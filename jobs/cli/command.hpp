@@ -6,12 +6,12 @@
 
 namespace semigeo::jobs::cli {
 
-/// Exit codes of every command.
-inline constexpr int kAllDone = 0;
-inline constexpr int kSomeFailed = 1;
-inline constexpr int kUsage = 2;
-inline constexpr int kStoppedEarly = 75;
-inline constexpr int kLocked = 73;  ///< Another run has the archive.
+// The exit codes of every command.
+inline constexpr int kAllDone = 0;        ///< All jobs are done, or were up to date.
+inline constexpr int kSomeFailed = 1;     ///< Some jobs have failed.
+inline constexpr int kUsage = 2;          ///< The command line is wrong.
+inline constexpr int kLocked = 73;        ///< Another run has the archive.
+inline constexpr int kStoppedEarly = 75;  ///< The run was stopped before all jobs had ended.
 
 // Each function adds a command and its options. When the command line names the command, it runs
 // and stores its exit code.

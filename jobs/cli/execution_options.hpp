@@ -9,17 +9,16 @@
 
 namespace semigeo::jobs::cli {
 
-/// Where jobs run.
+/// Says where jobs run.
 enum class ExecutorKind {
   kLocal,  ///< On this machine.
   kSlurm   ///< In an array job of Slurm.
 };
 
-/// How the graph of files and jobs is printed.
+/// Says how the graph of files and jobs is printed.
 enum class GraphFormat { kNone, kDot, kJson };
 
-/// How jobs are run and what is printed: the same for jobs of every kind. No byte of an output
-/// depends on it.
+/// Says how jobs of every kind are run, and what is printed. No byte of an output depends on it.
 struct ExecutionOptions {
   ExecutorKind executor = ExecutorKind::kLocal;
   ExecutorOptions limits;

@@ -11,7 +11,7 @@
 
 namespace semigeo::jobs::cli {
 
-/// Refuses what is no number: CLI::Range lets it pass.
+/// Refuses NaN, which CLI::Range accepts.
 inline std::string refuse_nan(const std::string& text) {
   double value = 0;
   return CLI::detail::lexical_cast(text, value) && std::isnan(value) ? "give a number" : "";
@@ -23,7 +23,7 @@ inline std::string refuse_negative(const std::string& text) {
   return first != std::string::npos && text[first] == '-' ? "give no negative number" : "";
 }
 
-/// Adds the option of one parameter to a command: a function for each kind of value.
+/// Adds the option of one parameter to a command. It has a function for each kind of value.
 template <typename Owner>
 class AddOption {
  public:

@@ -15,8 +15,8 @@ namespace semigeo::jobs {
 /// The files and folders of a library.
 struct LibraryPlace {
   std::filesystem::path library;
-  std::filesystem::path
-      parts;                   ///< Folder of the runs, and of partitions while the library is made.
+  /// Folder of the runs, and of the partitions while the library is made.
+  std::filesystem::path parts;
   std::filesystem::path home;  ///< Folder that has the lock, the journal and the logs.
 };
 
@@ -44,7 +44,7 @@ std::vector<LibraryModel> models_of(const std::filesystem::path& archive,
 LibraryModel model_of(const std::filesystem::path& dataset);
 
 /// Adds the jobs that make a library to the plan: the triplets of each model, the partitions, and
-/// last the library itself. Models must be sorted by name, each name once. Reads only.
+/// last the library itself. Models must be sorted by name, each name once. Writes nothing.
 void plan_library(std::vector<PlannedJob>& plan, const std::vector<LibraryModel>& models,
                   const LibraryPlace& place, const RecognitionParameters& parameters);
 

@@ -24,7 +24,7 @@ std::vector<std::filesystem::path> run_paths(const std::filesystem::path& parts,
                                              const std::vector<std::string>& models);
 
 /// Returns the bytes that a merging job may take for postings and buffers when all jobs that run
-/// side by side have `memory_bytes`; 0: not told.
+/// side by side have `memory_bytes`; 0: the user gave no limit.
 std::int64_t buffer_bytes(std::uint64_t memory_bytes);
 
 /// Returns what a job that merges one of `shares` equal shares of all triplets is expected to need.

@@ -25,7 +25,7 @@ struct SearchedLibrary {
 SearchedLibrary searched_library(const std::filesystem::path& file_or_archive);
 
 /// Plans a recognise job for each scene, in their order. Each makes FOLDER/recognised/<name>.json.
-/// Hashes the scenes on `threads` threads (0: one per core). Reads only.
+/// Hashes the scenes on `threads` threads (0: one per core). Writes nothing.
 std::vector<PlannedJob> plan_recognition(const std::vector<FoundScan>& scenes,
                                          const SearchedLibrary& library,
                                          const SearchParameters& parameters,

@@ -22,6 +22,7 @@ const JobKind& surface_kind();
 
 /// Returns the data of a surface job.
 const SurfaceJobData& surface_data(const Job& job);
+/// Returns the data of a surface job, to change it.
 SurfaceJobData& surface_data(Job& job);
 
 /// Returns the key of the dataset of this name that is made of a scan of these bytes.

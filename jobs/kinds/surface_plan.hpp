@@ -11,8 +11,8 @@
 namespace semigeo::jobs {
 
 /// Plans a surface job for each scan: hashes the scans on `threads` threads (0: one per core) and
-/// compares each key with that of the dataset in the archive. Reads only, and does not even read
-/// what the cache knows.
+/// compares each key with that of the dataset in the archive. Writes nothing, and reads no file
+/// whose digest the cache knows.
 std::vector<PlannedJob> plan_surfaces(const std::filesystem::path& archive,
                                       const std::vector<FoundScan>& scans,
                                       const SurfaceParameters& parameters, DigestCache& cache,

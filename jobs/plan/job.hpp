@@ -30,7 +30,7 @@ std::string shown_name(const Job& job);
 /// many files into one.
 const std::filesystem::path& subject_of(const Job& job);
 
-/// How much of an output is read before its key counts.
+/// Says how much of an output is read before its key counts.
 enum class KeyCheck {
   kHead,  ///< The head of the file, for many files at once.
   kWhole  ///< Whatever the format protects by checksums.

@@ -40,13 +40,13 @@ struct JobWords {
 struct EstimateContext {
   std::span<const PlannedJob> plan;
   const Estimates& learned;    ///< What the archive knows about scans.
-  std::uint64_t memory_bytes;  ///< Memory of all jobs that run side by side; 0: not told.
+  std::uint64_t memory_bytes;  ///< Memory of all jobs at once; 0: the user gave no limit.
 };
 
 /// The resources of a running job.
 struct JobContext {
   engine::RunContext engine;
-  std::uint64_t memory_bytes = 0;  ///< Memory of all jobs that run side by side; 0: not told.
+  std::uint64_t memory_bytes = 0;  ///< Memory of all jobs; 0: the user gave no limit.
 };
 
 /// A file that a job reads and no job of the plan makes.
@@ -75,8 +75,8 @@ struct JobSummary {
   std::vector<std::pair<std::string, nlohmann::json>> fields;  ///< Members of the run's document.
 };
 
-/// Everything that the program knows about one kind of job. Plan, executors, journal, graph and
-/// reports ask it and know no kind by name. Whoever adds a kind derives from TypedJobKind. All
+/// Knows all that the program needs to know about one kind of job. Plan, executors, journal, graph
+/// and reports ask it, and know no kind by name. Whoever adds a kind derives from TypedJobKind. All
 /// functions are const and may be called from any thread.
 class JobKind {
  public:
@@ -85,6 +85,7 @@ class JobKind {
   JobKind(const JobKind&) = delete;
   JobKind& operator=(const JobKind&) = delete;
 
+  /// Returns the words for jobs of this kind.
   virtual const JobWords& words() const = 0;
 
   // The output
@@ -122,10 +123,13 @@ class JobKind {
 
   // What other processes are told
 
+  /// Returns the data of a job as JSON.
   virtual nlohmann::json data_to_json(const Job& job) const = 0;
+  /// Reads what `data_to_json` returns. Throws std::exception on other values.
   virtual std::any data_from_json(const nlohmann::json& object) const = 0;
-  /// An empty result is null.
+  /// Returns a result as JSON: null if it is empty.
   virtual nlohmann::json result_to_json(const std::any& result) const = 0;
+  /// Reads what `result_to_json` returns. Throws std::exception on other values.
   virtual std::any result_from_json(const nlohmann::json& object) const = 0;
 
   // What people are told

@@ -9,6 +9,7 @@ namespace semigeo::jobs {
 
 /// One reason why a job runs.
 struct Reason {
+  /// The kinds of reasons.
   enum class Kind {
     kNoDataset,
     kUnusableDataset,  ///< The dataset is damaged, incomplete or of another format.

@@ -14,7 +14,7 @@ namespace semigeo::jobs {
 /// The settings of all jobs of an execution, wherever they run.
 struct ExecutionSettings {
   engine::Amount total = {};       ///< Cores and bytes of all jobs that run side by side.
-  std::uint64_t memory_bytes = 0;  ///< The bytes that the user has given; 0: not told.
+  std::uint64_t memory_bytes = 0;  ///< The limit that the user gave, in bytes; 0: none.
   double most_seconds = 0;         ///< Nothing starts that would not end in time; 0: no limit.
   int retries = 1;                 ///< Further attempts at a job whose process was lost.
   bool fail_fast = false;          ///< Nothing starts after the first failure.

@@ -14,14 +14,15 @@ namespace semigeo::jobs {
 /// A job that another process is to do.
 struct JobRequest {
   Job job;
-  int threads = 1;                 ///< Threads that the job may use at once.
-  std::uint64_t memory_bytes = 0;  ///< Memory of all jobs that run side by side; 0: not told.
+  int threads = 1;                        ///< Threads that the job may use at once.
+  std::uint64_t memory_bytes = 0;         ///< Memory of all jobs; 0: the user gave no limit.
   std::uint64_t address_space_bytes = 0;  ///< Address space of the process; 0: no limit.
   std::filesystem::path log;              ///< The file to which the output of the job is appended.
 };
 
 /// The outcome of a job, or how much work was done meanwhile.
 struct JobReply {
+  /// Tells whether the job goes on, is done, or has failed.
   enum class Kind { kWorked, kDone, kFailed };
   Kind kind = Kind::kFailed;
   std::int64_t worked = 0;     ///< Vertices times levels since the last reply.
@@ -35,7 +36,8 @@ struct JobReply {
 std::string to_line(const JobRequest& request);
 std::string to_line(const JobReply& reply);
 
-/// Reads a message. Throws std::runtime_error on any other line, and on jobs of other kinds.
+/// Reads a message. Throws std::runtime_error if the line is no such message, or if the job is of
+/// none of the kinds.
 JobRequest job_request_from(const std::string& line, const JobKinds& kinds);
 JobReply job_reply_from(const std::string& line);
 

@@ -24,9 +24,10 @@ struct JobOutcome {
 class JobListener {
  public:
   virtual ~JobListener() = default;
+  /// Is called when the first attempt at a job starts.
   virtual void job_started(const PlannedJob& planned) = 0;
-  /// It is also called for jobs that were never started, because they were skipped or turned out to
-  /// be up to date.
+  /// Is called when a job has ended. That includes jobs that were never started, because they were
+  /// skipped or turned out to be up to date.
   virtual void job_ended(const PlannedJob& planned, const JobOutcome& outcome) = 0;
 };
 

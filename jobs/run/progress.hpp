@@ -19,13 +19,17 @@ class Progress : public engine::Observer {
   Progress(std::int64_t jobs, std::uintmax_t bytes);
   ~Progress() override;
 
+  /// Counts work, in vertices times levels.
   void worked(std::int64_t amount) override;
 
+  /// Shows the name of a job that has started.
   void job_started(const std::string& name);
+  /// Counts a job that has ended, and the bytes of its scan.
   void job_ended(bool ok, std::uintmax_t bytes);
   /// Prints a separate line and leaves the live line whole.
   void say(const std::string& line);
 
+  /// Returns the work of all jobs so far, in vertices times levels.
   std::int64_t vertex_levels() const { return vertex_levels_; }
 
  private:

@@ -24,6 +24,7 @@ struct RunSummary {
   double wall_seconds = 0;
   double cpu_seconds = 0;
   double peak_bytes = 0;
+  /// Returns the vertices times levels per second.
   double rate() const {
     return wall_seconds > 0 ? static_cast<double>(vertex_levels) / wall_seconds : 0;
   }
@@ -60,7 +61,7 @@ struct RunHooks {
   /// Returns the settings of the execution; called after the lock is taken, as the home may have
   /// learned meanwhile.
   std::function<ExecutionSettings()> settings;
-  /// Is told, in one sentence each, what went wrong without being a failure of the run.
+  /// Receives a sentence about each problem that does not make the run fail.
   std::function<void(const std::string&)> warn;
   /// Receives the result while the home is still locked, so that no other run replaces the outputs
   /// that are read for a report.

@@ -18,6 +18,7 @@ class RunJournal : public JobListener {
 
   void job_started(const PlannedJob& planned) override;
   void job_ended(const PlannedJob& planned, const JobOutcome& outcome) override;
+  /// Writes the end of the run.
   void run_ended(const RunEnded& run);
 
   /// Returns why the journal of this run is not complete; empty if it is.

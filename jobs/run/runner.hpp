@@ -43,10 +43,11 @@ struct JobLost {
   std::string error;  ///< The sentence about the failure, if the job is not tried again.
   double seconds;
 };
-/// So many signals have asked the run to stop.
+/// Signals have asked the run to stop.
 struct StopAsked {
-  int requests;
+  int requests;  ///< Number of signals so far.
 };
+/// What Runner::wait reports.
 using RunnerEvent = std::variant<JobBegun, WorkDone, JobAnswered, JobLost, StopAsked>;
 
 /// Tells people one line.

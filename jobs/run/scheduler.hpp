@@ -10,6 +10,7 @@
 
 namespace semigeo::jobs {
 
+/// The limits within which jobs are scheduled.
 struct SchedulerOptions {
   engine::Amount total;      ///< Cores and bytes of all jobs that run side by side.
   double most_seconds = 0;   ///< Nothing starts that is not expected to end in time; 0: no limit.
@@ -18,7 +19,7 @@ struct SchedulerOptions {
   bool all_at_once = false;  ///< Every job may start now: the runner orders and admits them.
 };
 
-/// What the scheduler knows about a job.
+/// Holds what the scheduler knows about a job.
 struct ScheduledJob {
   std::vector<std::size_t> after = {};  ///< Jobs that must have ended before; smaller numbers.
   Estimate estimate = {};
@@ -26,7 +27,8 @@ struct ScheduledJob {
 };
 
 /// Decides which jobs run when, and what the end of a job means for the others. It is pure: it
-/// knows jobs by their numbers, starts nothing, reads no file and no clock. One thread at a time.
+/// knows jobs by their numbers, starts nothing, reads no file and no clock. Only one thread may use
+/// it at a time.
 ///
 /// The longest jobs come first. A job gets as many of the cores as its share of the time that is
 /// left for what need not wait for another job, rounded: many small jobs get one thread each, a
@@ -53,6 +55,8 @@ class Scheduler {
     kFailed,  ///< The job has ended.
     kNotRun   ///< The loss was wanted: the job has not run.
   };
+  /// Ends a running job whose process was lost, and returns what follows. `wanted` says that the
+  /// run itself has ended the process.
   Loss lose(std::size_t job, bool wanted);
 
   /// Lets nothing start any more; what runs goes on.

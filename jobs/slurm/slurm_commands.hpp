@@ -28,6 +28,7 @@ std::vector<std::string> sbatch_arguments(const SlurmArray& array);
 
 /// A task that has not ended.
 struct QueuedTask {
+  /// The states of a task in the queue.
   enum class State { kPending, kRunning };
   State state = State::kPending;
   std::string reason = {};  ///< Why it waits, as Slurm says: "Resources", "PartitionTimeLimit".

@@ -86,7 +86,7 @@ class Finder {
 
   kernels::LevelFeatures find() {
     kernels::LevelFeatures result;
-    // Parts of each are serial: four at once.
+    // Parts of each search are serial, so all four run at once.
     workers_.for_blocks(4, 1, [&](IndexRange range) {
       const auto kind = static_cast<int>(range.begin % kernels::kContourKinds);
       const CurvatureField& field = kind == 0 ? gaussian_ : mean_;

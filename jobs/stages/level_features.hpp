@@ -6,7 +6,7 @@
 
 namespace semigeo::jobs {
 
-/// Which points of a level are features.
+/// Says which points of a level are features.
 struct FeatureOptions {
   /// A maximum of curvature is compared with what lies within so many scales of the level, along
   /// the surface, and must stand out by a thousandth. With 0 it is compared with its ring of

@@ -132,7 +132,8 @@ class PartitionRows {
 void write_postings(const std::deque<io::PostingPartition>& partitions, std::int64_t memory,
                     io::HashLibraryWriter& writer, engine::Workers& workers) {
   const io::ArrayShape& shape = writer.posting_shape();
-  // Of each block there are its rows and its stored form, and that of one before it.
+  // For each block, its rows, its stored form and the stored form of a block before it are in
+  // memory.
   const std::int64_t at_once =
       std::clamp<std::int64_t>(memory / 6 / shape.chunk_bytes(), 1, 4 * workers.threads());
   const PartitionRows rows(partitions);

@@ -20,7 +20,7 @@ struct LibraryJob {
   std::int64_t memory_bytes = 0;  ///< Limit for postings and buffers; 0: 512 MiB.
 };
 
-/// What a library job made.
+/// Describes the output of a library job.
 struct LibraryJobResult {
   std::int64_t models = 0;
   std::int64_t postings = 0;

@@ -202,7 +202,7 @@ class Matcher {
     result.compared = comparisons();
     const std::size_t models = library_.models().size();
     result.first.assign(models + 1, 0);
-    std::vector<std::uint32_t> of_triangle(scene_.size());  // no more triangles than triplets
+    std::vector<std::uint32_t> of_triangle(scene_.size());  // there are at most as many triangles
     for (const auto& block : found)
       for (const TripletMatch& match : block) {
         ++result.first[match.model + 1];

@@ -20,7 +20,7 @@ struct TripletMatch {
   float weight = 0;                                 ///< 1 / (number of matches of the triangle).
 };
 
-/// All matches of a scene.
+/// Holds all matches of a scene.
 struct TripletMatches {
   std::vector<TripletMatch> matches;  ///< By model, then in the order of the library.
   std::vector<std::int64_t> first;    ///< (models + 1) First match of each model.

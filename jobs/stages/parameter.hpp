@@ -73,8 +73,10 @@ struct Choice {
   std::vector<std::string> words;
   /// Returns the index of the word, or words.size() if the value has none.
   std::function<std::size_t(const Owner&)> index;
+  /// Gives the value the word of this index.
   std::function<void(Owner&, std::size_t)> choose;
 
+  /// Returns the word of the value, or an empty text if it has none.
   std::string word(const Owner& owner) const {
     const std::size_t i = index(owner);
     return i < words.size() ? words[i] : std::string();
@@ -147,6 +149,7 @@ struct Parameter {
   const char* excludes = "";     ///< The option of an earlier row that cannot be given with it.
 };
 
+/// Lists parameters in the order of the help text.
 template <typename Owner>
 using ParameterTable = std::vector<Parameter<Owner>>;
 

@@ -22,7 +22,7 @@ using kernels::kCodeTriples;
 using kernels::Triplet;
 
 constexpr std::int64_t kModelsOfPartition = 1000;
-constexpr int kLeastShapes = 4;  // of a partition
+constexpr int kLeastShapes = 4;  // least number of shapes of a partition
 
 /// A posting that still knows its cell.
 struct Entry {
@@ -38,12 +38,12 @@ struct Entry {
         corners(triplet.corners),
         codes(static_cast<std::uint16_t>(triplet.cell % kCodeTriples)) {}
 };
-// What is stored is its beginning.
+// The beginning of an entry is stored as it is.
 static_assert(sizeof(Entry) == 28 && offsetof(Entry, model) == offsetof(kernels::Posting, model) &&
               offsetof(Entry, codes) == io::kPostingBytes);
 
-constexpr std::int64_t kSortBytes = sizeof(Entry) + io::kPostingBytes;  // of each posting
-constexpr std::int64_t kSortedBytes = 1 << 20;                          // at once, by a thread
+constexpr std::int64_t kSortBytes = sizeof(Entry) + io::kPostingBytes;  // memory for each posting
+constexpr std::int64_t kSortedBytes = 1 << 20;  // bytes that a thread sorts at once
 constexpr std::int64_t kReadBytes = sizeof(Triplet) + 24;
 
 /// The cells that are sorted at once: all cells of some shapes, or some cells of one shape.
@@ -93,7 +93,7 @@ class PartitionBuild {
   }
 
  private:
-  // Opens every run. Sums do not depend on the order in which threads add.
+  // Opens every run. The sums are of integers, so the order in which threads add does not matter.
   std::uint64_t count_shapes() {
     std::vector<std::int64_t> of_run(job_.runs.size());
     std::mutex mutex;
@@ -108,7 +108,7 @@ class PartitionBuild {
     return hash;
   }
 
-  // As many cells at once as memory can hold, or one.
+  // Returns slices of as many cells as memory can hold, or of one cell.
   std::vector<Slice> slices() {
     std::vector<Slice> slices;
     const auto add = [&](std::uint32_t first, std::uint32_t end, std::int64_t postings, bool open) {
@@ -120,7 +120,7 @@ class PartitionBuild {
         slices.push_back({first, end, postings});
       }
     };
-    bool whole = false;  // the last slice is of whole shapes
+    bool whole = false;  // the last slice consists of whole shapes
     for (int shape = job_.shapes.first; shape < job_.shapes.end; ++shape) {
       const Slice all{static_cast<std::uint32_t>(shape) * kCodeTriples,
                       static_cast<std::uint32_t>(shape + 1) * kCodeTriples, shape_counts_[shape]};
@@ -166,7 +166,7 @@ class PartitionBuild {
     std::vector<std::size_t> of_shape;
   };
 
-  // Shape after shape; those of a shape in the order of models.
+  // Collects the triplets shape after shape. Those of a shape are in the order of models.
   std::unique_ptr<Entry[]> gather(const Slice& slice) {
     const io::ShapeRange shapes = slice.shapes();
     const std::size_t shape_count = shapes.end - shapes.first;
@@ -210,7 +210,7 @@ class PartitionBuild {
     throw io::Error(job_.output, "", "the runs changed while they were read", "run again");
   }
 
-  // The first entry of each shape, and the end; a slice of cells is all of its only shape.
+  // Returns the first entry of each shape, and the end. A slice of cells has one shape.
   std::vector<std::size_t> begin_of_shapes(const Slice& slice) const {
     const io::ShapeRange shapes = slice.shapes();
     std::vector<std::size_t> begin = {0};
@@ -220,7 +220,8 @@ class PartitionBuild {
     return begin;
   }
 
-  // Packed postings by cell: a counting sort, which keeps the order of models, in each shape.
+  // Packs the postings of each shape by cell, with a counting sort, which keeps the order of
+  // models.
   void write_sorted(const Slice& slice, std::span<const Entry> entries,
                     io::PostingPartitionWriter& writer) {
     const io::ShapeRange shapes = slice.shapes();

@@ -20,7 +20,7 @@ struct PartitionJob {
   std::int64_t memory_bytes = 0;  ///< Limit for postings and buffers; 0: 512 MiB.
 };
 
-/// What a partition job made.
+/// Describes the output of a partition job.
 struct PartitionJobResult {
   std::int64_t postings = 0;
 };

@@ -133,7 +133,7 @@ void PoseExaminer::refine_roughly(const ListedModel& listed, ExaminedPose& pose)
                                    tuning_.refinement.rough);
 }
 
-/// Keeps the first of poses that have become one.
+/// Keeps the first of several poses that have become the same.
 void PoseExaminer::leave_out_repeated(ListedModel& listed) const {
   const RecognitionModel& model = listed.record;
   const kernels::PoseTolerance& same = tuning_.refinement.same;

@@ -11,7 +11,7 @@
 
 namespace semigeo::jobs {
 
-/// What is done to a repaired scan before it is smoothed. By default nothing is done.
+/// Says what is done to a repaired scan before it is smoothed. By default nothing is done.
 struct PreparationOptions {
   std::int64_t fill_holes = 0;            ///< Holes of at most so many edges are filled; 0: none.
   double decimate = 0;                    ///< Tolerance of the decimation; 0: none.
@@ -22,7 +22,7 @@ struct PreparationOptions {
   bool any() const { return fill_holes > 0 || decimates(); }
 };
 
-/// What was done to a scan.
+/// Counts what was done to a scan.
 struct PreparationResult {
   kernels::HoleCounts holes;
   std::int64_t filled_vertices = 0;  ///< Vertices that filling made and decimation left.

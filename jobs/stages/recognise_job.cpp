@@ -43,7 +43,7 @@ kernels::RecognitionModel read_scene(const RecogniseJob& job,
 
 Recognition recognise(const io::HashLibrary& library, const kernels::RecognitionModel& scene,
                       const SearchParameters& parameters, const engine::RunContext& context) {
-  // Where nothing stands out, nothing can be recognised.
+  // Nothing can be recognised in a scene without features.
   if (scene.features.features.empty()) return {};
   const RecognitionOptions options = {.min_score = parameters.min_score};
   if (parameters.method == RecognitionMethod::kThesis)

@@ -23,7 +23,7 @@ struct RecogniseJob {
   std::string key;  ///< Hash of everything the output depends on.
 };
 
-/// What a recognise job found.
+/// Counts what a recognise job found.
 struct RecogniseJobResult {
   std::int64_t features = 0;  ///< Number of features of the scene.
   std::int64_t triplets = 0;  ///< Number of triplets of these features.

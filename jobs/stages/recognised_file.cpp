@@ -118,7 +118,7 @@ json read_recognised(const std::filesystem::path& path) {
     throw io::Error(path, "", "is of another version", kRemedy);
   json content = document;
   content.erase("digest");
-  // Not every digit that changes makes another number.
+  // A changed digit does not always change the number that is read, so bytes are compared.
   if (document.value("digest", json()) != digest_of(content) || text != text_of(document))
     throw io::Error(path, "", "is damaged: it does not have its digest", kRemedy);
   return document;

@@ -31,9 +31,9 @@ nlohmann::json json_of(const ScanRepairs& repairs);
 /// Returns the counts as the text of their JSON.
 std::string to_json(const kernels::SurfaceRepairs& repairs);
 
-/// Reads and repairs a scan. `xxh3` is the digest of its bytes as they were. Throws io::Error on an
-/// unreadable scan, one that changed meanwhile, one without a usable triangle, and one whose
-/// lengths no single precision holds.
+/// Reads and repairs a scan. `xxh3` is the digest that its bytes had when the job was planned.
+/// Throws io::Error if the scan cannot be read, has changed since then, has no usable triangle, or
+/// has lengths that single precision cannot hold.
 ScanSurface read_surface(const std::filesystem::path& scan, const std::string& xxh3);
 
 }  // namespace semigeo::jobs

@@ -14,7 +14,7 @@ const ParameterTable<SearchParameters>& search_parameter_table() {
                "which name one model, even if none is there",
        .value = choice(field<&Search::method>(),
                        {{"overlap", Method::kOverlap}, {"thesis", Method::kThesis}})},
-      // Its option is that of `semigeo recognise` alone, as its default depends on the method.
+      // Only `semigeo recognise` declares the option, because its default depends on the method.
       {.key = "min_score", .value = NumberIn<Search, double>{field<&Search::min_score>()}},
   };
   return table;

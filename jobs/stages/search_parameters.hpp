@@ -8,13 +8,13 @@
 
 namespace semigeo::jobs {
 
-/// How models are found in a scene.
+/// The methods by which models are found in a scene.
 enum class RecognitionMethod {
   kOverlap,  ///< Surfaces are laid onto each other: stages/recognise_scene.hpp.
   kThesis    ///< Votes and clusters as in the thesis: stages/thesis_recognition.hpp.
 };
 
-/// What a recognition depends on besides the scene and the library.
+/// Holds all that a recognition depends on besides the scene and the library.
 struct SearchParameters {
   RecognitionMethod method = RecognitionMethod::kOverlap;
   double min_score = RecognitionOptions{}.min_score;  ///< A model with less is not in the scene.

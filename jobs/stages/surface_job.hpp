@@ -24,7 +24,7 @@ struct SurfaceJob {
   std::string key;         ///< Hash of everything the dataset depends on.
 };
 
-/// What a surface job made.
+/// Describes the output of a surface job.
 struct SurfaceJobResult {
   std::string format;  ///< File format of the scan.
   std::int64_t vertices = 0;

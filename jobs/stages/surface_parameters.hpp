@@ -12,7 +12,7 @@
 
 namespace semigeo::jobs {
 
-/// Everything besides the scan itself that the content of a dataset depends on.
+/// Holds all parameters of a dataset: everything that its content depends on besides the scan.
 struct SurfaceParameters {
   int levels = 8;  ///< Number of smoothing iterations; the dataset has one more level.
   PreparationOptions preparation = {};

@@ -15,7 +15,7 @@ namespace semigeo::jobs {
 // Recognition as in the thesis (4.5, 4.6, 5.9, 5.10), to compare with: all triplets of the
 // strongest features in four hash tables, votes, clusters of poses. Surfaces are not compared.
 
-/// How the thesis finds models.
+/// Holds the parameters of recognition as in the thesis.
 struct ThesisRecognitionOptions {
   kernels::ThesisOptions hash;
   int level = 1;  ///< Level of models and scene; the thesis picks one for each (5.8).
@@ -32,8 +32,8 @@ struct ThesisScore {
   bool survives = false;     ///< The members below are set for survivors only.
   std::int64_t matches = 0;  ///< Number of matches of all kinds.
   std::int64_t cluster = 0;  ///< Number of members of the largest cluster.
-  kernels::Similarity
-      pose;  ///< Pose of that cluster, from model to scene, in coordinates of the files.
+  /// Pose of that cluster, from model to scene, in coordinates of the files.
+  kernels::Similarity pose;
 };
 
 /// The four hash tables of a library, in memory. A triplet takes 40 bytes; a model has at most
@@ -58,8 +58,8 @@ class ThesisDatabase {
   ThesisRecognitionOptions options_;
   const engine::RunContext& context_;
   std::vector<kernels::RecognitionModel> models_;
-  std::vector<std::array<std::int64_t, kernels::kFeatureKinds>>
-      counts_;                                ///< Number of chosen features.
+  /// Number of chosen features.
+  std::vector<std::array<std::int64_t, kernels::kFeatureKinds>> counts_;
   std::vector<kernels::ThesisTable> tables_;  ///< One table for each kind.
 };
 

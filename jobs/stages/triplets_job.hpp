@@ -19,7 +19,7 @@ struct TripletsJob {
   std::function<std::string(const std::string&)> key_of;
 };
 
-/// What a triplets job made.
+/// Describes the output of a triplets job.
 struct TripletsJobResult {
   std::int64_t features = 0;
   std::int64_t samples = 0;

@@ -13,9 +13,9 @@
 namespace semigeo::kernels {
 namespace {
 
-/// Tells whether two edges no longer than `radius` together lead to a comparable vertex that is
-/// higher. Along the surface it is not farther; most that are no maximum are found out here, at a
-/// tenth of the cost of a ball.
+/// Tells whether a path of two edges, not longer than `radius`, leads to a comparable vertex that
+/// is higher. The distance along the surface is not longer than the path. This test rejects most
+/// vertices that are no maximum, at a tenth of the cost of a ball.
 bool outdone_two_edges_away(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
                             const CurvatureField& field, std::int32_t v, double radius) {
   const auto length = [&](std::int32_t a, std::int32_t b) {
@@ -72,7 +72,7 @@ Summit summit(const Connectivity& surface, std::span<const Eigen::Vector4f> poin
   for (const std::int32_t w : neighbours(surface, v))
     if (field.comparable(v, w)) least = std::min(least, field.magnitude(w));
   double weights = field.magnitude(v) - least;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // relative to v
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // sum of positions relative to v
   for (const std::int32_t w : neighbours(surface, v)) {
     if (!field.comparable(v, w)) continue;
     weights += field.magnitude(w) - least;
@@ -107,7 +107,7 @@ std::vector<std::int32_t> peaks_of(std::vector<std::int32_t> uphill) {
     if (uphill[v] == kNone) continue;
     std::int32_t peak = uphill[v];
     while (uphill[peak] != peak) peak = uphill[peak];
-    // Everything on the way now points to the peak itself.
+    // All vertices on the way are made to point to the peak itself.
     for (auto w = static_cast<std::int32_t>(v); uphill[w] != peak;) {
       const std::int32_t next = uphill[w];
       uphill[w] = peak;
@@ -119,9 +119,9 @@ std::vector<std::int32_t> peaks_of(std::vector<std::int32_t> uphill) {
 
 std::vector<float> prominences(const Connectivity& surface, const CurvatureField& field,
                                std::span<const std::int32_t> peaks) {
-  // Passes: edges between the slopes of two peaks, as high as their lower end. Highest first, as
-  // one number each: the height, whose bits are in the order of positive floats, upside down, and
-  // the half-edge.
+  // A pass is an edge between the slopes of two peaks. Its height is that of its lower end. Passes
+  // are sorted by height, the highest first. Each is one number: the inverted bits of the height,
+  // which order positive floats backwards, and the half-edge.
   std::vector<std::uint64_t> passes;
   for (std::int32_t f = 0; f < surface.face_count(); ++f) {
     const auto& t = surface.triangles[f];
@@ -138,7 +138,8 @@ std::vector<float> prominences(const Connectivity& surface, const CurvatureField
   }
   radix_sort(passes, 32, 64);  // half-edges already ascend
 
-  // The sea falls: at each pass the lower of two islands becomes part of the higher one.
+  // Passes are visited from the highest to the lowest, as a falling sea uncovers them. At each pass
+  // two islands join, and the lower one becomes part of the higher one.
   std::vector<float> result(peaks.size(), 0.0f);
   std::vector<std::int32_t> island(peaks.size());
   std::iota(island.begin(), island.end(), 0);

@@ -16,7 +16,9 @@ enum class FeatureKind {
   kGaussianTorsion,  ///< A local maximum of |torsion| along a contour of K = 0.
   kMeanTorsion       ///< A local maximum of |torsion| along a contour of H = 0.
 };
+/// The number of kinds of features.
 inline constexpr int kFeatureKinds = 4;
+/// The names of the kinds of features in files.
 inline constexpr std::array<const char*, kFeatureKinds> kFeatureKindNames = {
     "gaussian", "mean", "gaussian_torsion", "mean_torsion"};
 
@@ -36,7 +38,7 @@ struct Feature {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< On the level, between its vertices.
   Eigen::Vector3f initial_position = Eigen::Vector3f::Zero();  ///< On level 0.
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< Unit normal of the smoothed surface.
-  float scale_free_gaussian = 0;                     ///< sign(K) sqrt(|K|) sigma, at the vertex.
+  float scale_free_gaussian = 0;                     ///< sign(K) sqrt(|K|) sigma at the vertex.
   float scale_free_mean = 0;                         ///< H sigma, at the vertex.
 };
 
@@ -48,7 +50,7 @@ struct SampledContours {
   std::vector<std::uint8_t> closed;     ///< (C) 1 where the last point joins the first.
   std::vector<std::int64_t> maxima;     ///< Points where |torsion| is a local maximum; each is a
                                         ///< feature, in this order.
-  double length = 0;                    ///< Of all contours, before they were cut into steps.
+  double length = 0;                    ///< Length of all contours before they were resampled.
 
   std::int64_t count() const { return static_cast<std::int64_t>(closed.size()); }
 };
@@ -59,7 +61,7 @@ using FeaturesByKind = std::array<std::vector<Feature>, kFeatureKinds>;
 /// Holds all features and contours of a level.
 struct LevelFeatures {
   FeaturesByKind of_kind;
-  std::array<SampledContours, kContourKinds> contours;  ///< Of K = 0 and of H = 0.
+  std::array<SampledContours, kContourKinds> contours;  ///< Contours of K = 0, then of H = 0.
 };
 
 }  // namespace semigeo::kernels

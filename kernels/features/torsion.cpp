@@ -9,8 +9,8 @@
 namespace semigeo::kernels {
 namespace {
 
-/// The curvature times sample distance below which a curve counts as straight: it has no osculating
-/// plane.
+/// The curvature times sample distance below which a curve counts as straight. A straight curve has
+/// no osculating plane.
 constexpr double kStraight = 1e-3;
 /// The height of the pass where nothing higher can be reached.
 constexpr float kNoPass = -1;
@@ -63,7 +63,7 @@ std::vector<float> torsion(std::span<const Eigen::Vector3d> samples, bool closed
     if (!closed && (i < kReach || i + kReach >= n)) continue;
     Eigen::Vector3d r1 = Eigen::Vector3d::Zero(), r2 = r1, r3 = r1;
     for (int k = 0; k < kTaps; ++k) {
-      // Relative to the sample: no digits are lost far from the origin.
+      // Points are taken relative to the sample, so that no digits are lost far from the origin.
       const Eigen::Vector3d r = samples[(i + k - kReach + n) % n] - samples[i];
       r1 += filters.first[k] * r;   // (4.15)
       r2 += filters.second[k] * r;  // (4.15)
@@ -93,7 +93,7 @@ std::vector<float> torsion_prominences(std::span<const float> torsion, bool clos
   std::vector<float> passes(torsion.size(), kNoPass);
   struct Step {
     float height;
-    float lowest;  // between the step before and this one
+    float lowest;  // the lowest height between the step before and this one
   };
   std::vector<Step> descending;
   for (const bool forwards : {true, false}) {
@@ -106,7 +106,7 @@ std::vector<float> torsion_prominences(std::span<const float> torsion, bool clos
         lowest = std::min({lowest, descending.back().height, descending.back().lowest});
         descending.pop_back();
       }
-      // On closed contours the second lap knows all that lies behind.
+      // Closed contours take two laps. In the second lap `descending` holds the whole contour.
       if (!descending.empty()) passes[i] = std::max(passes[i], lowest);
       descending.push_back({height, lowest});
     }

@@ -7,8 +7,8 @@
 
 namespace semigeo::kernels {
 
-/// Describes a point of a polyline, between point `segment` and the next one; after the last point
-/// of a closed polyline comes the first.
+/// Describes a point of a polyline. It lies between point `segment` and the next one. After the
+/// last point of a closed polyline comes the first one.
 struct ArcPoint {
   std::int32_t segment = 0;
   float fraction = 0;  ///< 0 at point `segment`, 1 at the next one.
@@ -25,7 +25,8 @@ struct ArcSamples {
 /// polyline without length has one sample.
 ArcSamples resample(std::span<const Eigen::Vector3d> points, bool closed, double spacing);
 
-/// Returns the length of a polyline, with the way back to the first point if it is closed.
+/// Returns the length of a polyline, in the units of its points. If it is closed, the segment from
+/// its last point to its first is included.
 double length_of(std::span<const Eigen::Vector3d> points, bool closed);
 
 /// Returns the torsion at each of the equidistant samples of a curve, in 1 / units of the samples.

@@ -21,8 +21,8 @@ bool crossed(const Connectivity& surface, const CurvatureField& field, std::int3
   return positive(field, t[1]) != first || positive(field, t[2]) != first;
 }
 
-/// A contour with positive values to its left enters a face over the half-edge that leads from
-/// positive to negative, and leaves it over the one that leads back.
+/// Holds the half-edges through which a contour crosses a face. With positive values to its left,
+/// it enters over the half-edge from positive to negative, and leaves over the one that leads back.
 struct Passage {
   std::int32_t entry = kNone;
   std::int32_t exit = kNone;

@@ -12,7 +12,8 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// Of both normals' sum across the pair: with less, noise turns the frame.
+/// The least length of the sum of both normals, projected across the pair. If it is shorter, noise
+/// decides how the frame is turned.
 constexpr float kLeastAcross = 0.5F;
 
 class LevelPairs {
@@ -20,7 +21,7 @@ class LevelPairs {
   LevelPairs(const PairOptions& options, std::vector<FeaturePair>& result)
       : options_(options), result_(result) {}
 
-  /// Of the features of one level, the first of which has the number `first`.
+  /// Adds the pairs of one level. `first` is the index of its first feature.
   void add(std::span<const OrientedFeature> of_level, float sigma, std::size_t first) {
     of_level_ = of_level;
     sigma_ = sigma;

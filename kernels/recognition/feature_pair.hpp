@@ -26,6 +26,7 @@ struct FeaturePair {
   float length = 0;  ///< Distance of the corners, in length units.
 };
 
+/// Says which features are paired.
 struct PairOptions {
   int neighbours = 12;   ///< Nearest features within the band that each is paired with.
   double nearest = 1.5;  ///< Least length, in sigma of the level.
@@ -36,11 +37,11 @@ struct PairOptions {
 
 /// Returns the pairs of every feature of a level with its nearest neighbours, each pair once (or
 /// once an order), sorted by codes, then corners. Pairs whose normals do not tell how they are
-/// turned are left out. Source: thesis 4.5, step 2. Differs: two oriented features where the thesis
-/// has three.
+/// turned are left out. Source: thesis 4.5, step 2. Differs: the thesis has groups of three
+/// features without normals; here they are groups of two with normals.
 std::vector<FeaturePair> local_pairs(const OrientedFeatures& features, const PairOptions& options);
 
-/// Tells whether two pairs of the same codes may be one pair, seen twice: log lengths within 0.35,
+/// Tells whether two pairs of the same codes may be two views of one pair: log lengths within 0.35,
 /// curvatures at each corner within 0.25 + 0.35 of their size, normals within 30 degrees in the
 /// frames.
 bool compatible(const FeaturePair& a, const FeaturePair& b);

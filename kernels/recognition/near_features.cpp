@@ -46,7 +46,7 @@ void NearFeatures::find(std::span<const OrientedFeature> of_level, double neares
     in_band_.clear();
     for (std::size_t j = 0; j < count; ++j)
       if (squared_[j] >= band.least && squared_[j] <= band.most)
-        // Positive floats are in the order of their bits.
+        // Positive floats have the same order as their bits.
         in_band_.push_back(std::uint64_t{std::bit_cast<std::uint32_t>(squared_[j])} << 32 | j);
     const auto kept = std::min<std::size_t>(in_band_.size(), most);
     std::ranges::partial_sort(in_band_, in_band_.begin() + static_cast<std::ptrdiff_t>(kept));

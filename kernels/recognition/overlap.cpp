@@ -28,7 +28,7 @@ struct Cloud {
   }
 };
 
-/// Collects the nearest point within a limit; the first where several are equally near.
+/// Collects the nearest point within a limit. If several are equally near, it is the first one.
 class NearestWithin {
  public:
   using DistanceType = float;
@@ -67,7 +67,7 @@ std::size_t bounded(std::int64_t count, const SurfaceSamples& samples) {
   return std::min(static_cast<std::size_t>(count), samples.points.size());
 }
 
-/// Of the first n samples.
+/// Returns the mean of the first n samples.
 Vector3d middle_of(const SurfaceSamples& samples, std::size_t n) {
   Vector3d middle = Vector3d::Zero();
   for (std::size_t i = 0; i < n; ++i)
@@ -75,8 +75,8 @@ Vector3d middle_of(const SurfaceSamples& samples, std::size_t n) {
   return middle;
 }
 
-/// Tells whether q with normal n, the sample nearest to p, is the surface that p lies on. Samples
-/// stand for the surface round them: beside them it goes on.
+/// Tells whether p lies on the surface that is sampled at q with normal n. q is the sample nearest
+/// to p. A sample stands for the surface around it, so p may lie beside it by the spacing.
 bool on_surface(const Vector3f& p, const Vector3f& q, const Vector3f& n, float tolerance,
                 float spacing) {
   const Vector3f offset = p - q;
@@ -86,13 +86,13 @@ bool on_surface(const Vector3f& p, const Vector3f& q, const Vector3f& n, float t
   return offset.squaredNorm() - height * height <= reach * reach;
 }
 
-/// Holds a sample of a posed model and what it touches of the scene.
+/// Holds a sample of a posed model and how it lies to the nearest sample of the scene.
 struct Contact {
   OrientedPoint posed;
-  std::int64_t near = -1;  ///< the nearest sample of the scene, -1: none within the limit
-  bool matches = false;    ///< both are one surface
-  float height = 0;        ///< over the scene's surface
-  float cosine = 0;        ///< between the normals
+  std::int64_t near = -1;  ///< Nearest sample of the scene; -1: none within the limit.
+  bool matches = false;    ///< Both lie on one surface.
+  float height = 0;        ///< Height over the scene's surface.
+  float cosine = 0;        ///< Cosine between the normals.
 };
 
 /// Compares samples of a model in one pose with a scene.
@@ -161,7 +161,7 @@ std::int64_t SampleTree::nearest(const Vector3f& p, float limit, std::int64_t gu
   NearestWithin result(limit * limit);
   if (guess >= 0) {
     const Vector3f offset = p - samples_->points[guess];
-    // As the tree sums squares, so that what is equally near stays so.
+    // The squares are summed as the tree sums them, so that equal distances stay equal.
     const float squared =
         offset.x() * offset.x() + offset.y() * offset.y() + offset.z() * offset.z();
     result.addPoint(squared, static_cast<std::size_t>(guess));
@@ -209,7 +209,7 @@ std::vector<Similarity> symmetric_poses(const SurfaceSamples& model, double diag
                                         const Similarity& pose, const SampleTree& tree,
                                         const OverlapOptions& options, std::int64_t count) {
   constexpr int kTurns = 36;
-  constexpr double kFree = 0.02;  // a handle holds a cup by no more
+  constexpr double kFree = 0.02;  // the handle of a cup holds it by less
   std::vector<Similarity> result;
   const std::size_t n = bounded(count, model);
   if (n == 0) return result;
@@ -264,7 +264,7 @@ Similarity refine_pose(const SurfaceSamples& model, double diagonal, const Simil
   const std::size_t n = bounded(options.count, model);
   const Vector3d centre = middle_of(model, n);
   Similarity pose = start;
-  std::vector<std::int64_t> nearest(n, -1);  // to each sample, before the last step
+  std::vector<std::int64_t> nearest(n, -1);  // nearest sample of the scene in the last step
   for (const double reach : options.reach)
     for (int iteration = 0; iteration < options.iterations; ++iteration) {
       const FastPose fast(pose);
@@ -273,7 +273,8 @@ Similarity refine_pose(const SurfaceSamples& model, double diagonal, const Simil
       const float spacing = scene.samples().spacing;
       Matrix7d normal_matrix = Matrix7d::Zero();
       Constraint right = Constraint::Zero();
-      // About the middle, in units of the model's size: all seven unknowns are of one magnitude.
+      // Motions are taken about the middle and in units of the model's size, so that all seven
+      // unknowns have the same magnitude.
       const Vector3d middle = pose.apply(centre);
       int matched = 0;
       for (std::size_t i = 0; i < n; ++i) {
@@ -294,7 +295,7 @@ Similarity refine_pose(const SurfaceSamples& model, double diagonal, const Simil
         ++matched;
       }
       if (matched < kFewest) return pose;
-      // Directions that no plane holds stay as they are.
+      // A small weight on each unknown makes it 0 if no plane determines it.
       normal_matrix.diagonal().array() += 1e-4 * matched * reach;
       const Constraint step =
           Matrix7d(normal_matrix.selfadjointView<Eigen::Lower>()).ldlt().solve(right);

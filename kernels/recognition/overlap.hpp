@@ -46,16 +46,17 @@ struct Overlap {
   double closeness = 0;  ///< Mean of 1 - (distance / tolerance)^2 over the samples that match.
   double stability = 0;  ///< How firmly the samples that match hold it: Slippage::stability.
 
-  /// Returns what a match is worth that is contradicted in part: match closeness (match / (match +
-  /// conflict))^2.
+  /// Returns the match, reduced by contradiction: match closeness (match / (match + conflict))^2.
   double agreement() const;
 };
 
-/// Compares the first `count` samples of a posed model with a scene. `used` marks samples of the
-/// scene that belong to something else already: what lies on them is neutral; it may be empty. What
-/// is far from the scene's surface is neutral, and what is nearest to its rim; and, in a scene with
-/// a rim, what faces the other way behind its surface, as the far sides of objects do that were
-/// seen from one side. Source: thesis 4.6. Differs: surfaces are compared, not triplets.
+/// Compares the first `count` samples of a posed model with a scene. `diagonal` is the diagonal of
+/// the model before it is posed. A sample near the scene's surface matches or contradicts it; a
+/// sample far from it is neutral. A sample is also neutral if it lies nearest to one that `used`
+/// marks as part of another object (`used` may be empty). In a scene with a rim, a sample that does
+/// not match is neutral if it lies nearest to the rim, or if it lies behind the surface and faces
+/// the other way, like the far side of an object that was scanned from one side. Source:
+/// thesis 4.6. Differs: surfaces are compared, not triplets.
 Overlap overlap(const SurfaceSamples& model, double diagonal, const Similarity& pose,
                 const SampleTree& scene, const OverlapOptions& options, std::int64_t count,
                 std::span<const std::uint8_t> used = {});
@@ -74,6 +75,7 @@ std::vector<std::uint8_t> samples_on_model(const SampleTree& model, double diago
                                            const OverlapOptions& options, std::int64_t count,
                                            std::span<const std::uint8_t> used = {});
 
+/// Says how a pose is refined.
 struct RefineOptions {
   std::vector<double> reach = {0.05, 0.02, 0.01, 0.008};  ///< Limit of each stage, in diagonals.
   int iterations = 4;                                     ///< Number of iterations of each stage.

@@ -9,7 +9,7 @@
 
 namespace semigeo::kernels {
 
-/// Tells where a model is according to one match.
+/// Holds the pose of a model that one match suggests.
 struct PoseVote {
   Similarity pose;  ///< From the model to the scene.
   double weight = 0;
@@ -29,15 +29,16 @@ struct PoseTolerance {
   double angle = 0.3;      ///< Rotation, in radians.
 };
 
+/// Says how clusters are formed.
 struct ClusterOptions {
   PoseTolerance tolerance = {};
   int seeds = 600;  ///< Number of poses tried: half of them by weight, half spread.
   int most = 120;   ///< Greatest number of clusters.
 };
 
-/// Holds the votes of one model, 40 bytes each. Source: thesis 4.6. Differs: a cluster is all that
-/// agrees with its seed, taken about the best seeds, instead of growing from the first pose that
-/// comes; poses are similarities.
+/// Holds the votes of one model, 40 bytes each. Source: thesis 4.6. Differs: poses are
+/// similarities, and a cluster is made of all poses that agree with a seed, the best seeds first.
+/// In the thesis clusters grow from poses in the order in which they come.
 class PoseVotes {
  public:
   PoseVotes() = default;

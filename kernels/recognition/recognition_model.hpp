@@ -22,7 +22,7 @@ struct RecognitionModel {
   std::string name;    ///< Name of its dataset.
   std::string digest;  ///< Content digest of its dataset.
   std::string length_unit = "unknown";
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< Added, it gives the scan's coordinates.
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< Offset of the points in the scan.
   Eigen::Vector3f centre = Eigen::Vector3f::Zero();  ///< Centre of the bounding box.
   float diagonal = 0;                                ///< Diagonal of the bounding box.
   OrientedFeatures features;

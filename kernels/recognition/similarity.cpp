@@ -64,7 +64,8 @@ Similarity operator*(const Similarity& first, const Similarity& second) {
 }
 
 double rotation_between(const Matrix3d& a, const Matrix3d& b) {
-  // The chord, not the trace, whose arc cosine has no digits left at small angles.
+  // The angle is computed from the chord. The arc cosine of the trace loses all digits at small
+  // angles.
   return 2 * std::asin(std::min(1.0, (a - b).norm() / std::sqrt(8.0)));
 }
 
@@ -85,7 +86,7 @@ Similarity similarity_between(const OrientedTriangle& from, const OrientedTriang
   Similarity result;
   result.scale = perimeter_of(to) / perimeter_of(from);
   result.rotation = frame_of(to) * frame_of(from).transpose();
-  // The triangles alone fix a rotation; one step of least squares lets normals have their say.
+  // The triangles alone determine a rotation. One step of least squares takes normals into account.
   const auto source = directions_of(from);
   const auto target = directions_of(to);
   Matrix3d inertia = Matrix3d::Zero();

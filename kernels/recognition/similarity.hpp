@@ -11,9 +11,11 @@ struct Similarity {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 
+  /// Returns where a point goes.
   Eigen::Vector3d apply(const Eigen::Vector3d& p) const {
     return scale * (rotation * p) + translation;
   }
+  /// Returns the transform that undoes this one.
   Similarity inverse() const;
   /// Returns the 4 x 4 matrix for homogeneous column vectors.
   Eigen::Matrix4d matrix() const;
@@ -22,7 +24,7 @@ struct Similarity {
 /// Returns the similarity that applies `second` and then `first`.
 Similarity operator*(const Similarity& first, const Similarity& second);
 
-/// Returns the angle of the rotation that leads from one to the other, in radians, 0 to pi.
+/// Returns the angle of the rotation that leads from a to b, in radians, 0 to pi.
 double rotation_between(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b);
 
 /// Holds angles in radians with R = Rz(alpha) Ry(beta) Rx(gamma). Where beta is a quarter turn,
@@ -44,7 +46,7 @@ struct OrientedTriangle {
 /// Returns the similarity that takes `from` to `to`, corner by corner. The scale comes from the
 /// perimeters, the rotation from edges and normals together, the translation from the centroids.
 /// The result is exact where there is an exact one. Source: thesis 4.6, (4.19), (4.20). Differs:
-/// (4.19) is singular, its reduced form affine.
+/// the equations (4.19) are singular, and their reduced form gives affine transforms.
 Similarity similarity_between(const OrientedTriangle& from, const OrientedTriangle& to);
 
 }  // namespace semigeo::kernels

@@ -10,8 +10,8 @@ namespace {
 using Eigen::Vector3d;
 using Matrix7d = Eigen::Matrix<double, 7, 7>;
 
-/// Of the squared length of a motion: with less the axis lies more than three radii away, or there
-/// is none.
+/// The least share of the rotation in the squared length of a motion. With less, the axis lies more
+/// than three radii away, or there is none.
 constexpr double kLeastTurn = 0.1;
 
 }  // namespace
@@ -49,7 +49,7 @@ std::optional<Axis> Slippage::free_rotation(double most) const {
   const Vector3d turn = least_.head<3>();
   const Vector3d shift = least_.segment<3>(3);
   if (held_[0] > most || turn.squaredNorm() < kLeastTurn) return std::nullopt;
-  // Where turn x arm + shift = 0 but along the axis.
+  // On the axis, turn x arm + shift has no part across the axis.
   return Axis{middle_ + radius_ * turn.cross(shift) / turn.squaredNorm(), turn.normalized()};
 }
 

@@ -12,11 +12,12 @@ struct OrientedPoint {
   Eigen::Vector3f normal;
 };
 
-/// Holds what a plane says on turning (first three), shifting (next three) and growing (last).
+/// Holds how the distance from a plane changes with rotation (first three numbers), translation
+/// (next three) and scaling (last).
 using Constraint = Eigen::Matrix<double, 7, 1>;
 
-/// Returns how the distance of a point from its plane changes when the surface turns, shifts and
-/// grows about a middle; `arm` leads from there to the point.
+/// Returns how the distance of a point from its tangent plane changes when the surface is rotated,
+/// translated and scaled about a centre. `arm` leads from the centre to the point.
 Constraint plane_constraint(const Eigen::Vector3d& arm, const Eigen::Vector3d& normal);
 
 /// Describes the axis of a rotation.
@@ -26,11 +27,11 @@ struct Axis {
 };
 
 /// Tells in which ways a surface can slip along itself, that is, by which motions its points stay
-/// in their planes. Seven numbers say how firmly it is held, 0 where it slips; they have no unit,
-/// as arms are in radii about the middle. A surface of revolution slips in one way, cylinders and
-/// cones in two, planes and spheres in more. A surface that slips in two ways is no proof of where
-/// a model lies. Source: Gelfand et al. 2003 (stable ICP), Gelfand and Guibas 2004. Differs: it may
-/// grow, too.
+/// in their planes. Seven numbers say how firmly it is held in as many motions; 0 means that
+/// it slips. They have no unit, because lengths are measured in radii of the surface. A surface of
+/// revolution slips in one way, cylinders and cones in two, planes and spheres in more. A surface
+/// that slips in two ways is no proof of where a model lies. Source: Gelfand et al. 2003 (stable
+/// ICP), Gelfand and Guibas 2004. Differs: scaling is a seventh motion.
 class Slippage {
  public:
   /// Examines a surface. Without points it is held by nothing.

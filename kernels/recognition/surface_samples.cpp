@@ -26,12 +26,12 @@ double area_of(std::span<const Vector3f> points, const Triangle& triangle) {
   return 0.5 * u.cross(v).norm();
 }
 
-/// Returns the faces along a Z-order curve: equal steps of area along it are spread evenly in
-/// space.
+/// Returns the faces in their order along a Z-order curve. Equal steps of area along the curve are
+/// spread evenly in space.
 std::vector<std::int32_t> along_curve(std::span<const Vector3f> points, Triangles triangles) {
   const Eigen::AlignedBox3f box = bounding_box(points);
   const float cell = std::max(box.sizes().maxCoeff(), 1e-30F) / 1023;
-  std::vector<std::uint64_t> keys;  // place along the curve, face
+  std::vector<std::uint64_t> keys;  // place along the curve and face, in one number
   keys.reserve(triangles.size());
   for (const auto& [a, b, c] : triangles) {
     const Vector3f place = ((points[a] + points[b] + points[c]) / 3 - box.min()) / cell;
@@ -74,8 +74,8 @@ std::vector<std::array<std::int32_t, 2>> boundary_edges(Triangles triangles) {
   return single;
 }
 
-/// The fractions of k times two irrational numbers: evenly spread over the unit square (R.
-/// Kronecker sequence with the plastic number).
+/// Returns point k of a sequence that is spread evenly over the unit square: the fractions of k
+/// times two irrational numbers (a Kronecker sequence with the plastic number).
 Eigen::Vector2f spread_over_square(std::int64_t k) {
   constexpr double kPlastic = 1.32471795724474602596;
   const auto fraction = [](double x) { return static_cast<float>(x - std::floor(x)); };
@@ -83,8 +83,8 @@ Eigen::Vector2f spread_over_square(std::int64_t k) {
   return {fraction(n / kPlastic), fraction(n / (kPlastic * kPlastic))};
 }
 
-/// Where 0, 1, ..., count - 1 come in an order whose beginnings are spread evenly: by reversed
-/// bits.
+/// Returns the place of each of 0, 1, ..., count - 1 in an order whose beginnings are all spread
+/// evenly. It is the order of the reversed bits.
 std::vector<std::int64_t> evenly_begun(std::int64_t count) {
   const auto bits = static_cast<int>(std::bit_width(static_cast<std::uint64_t>(count - 1)));
   std::vector<std::int64_t> place(count);

@@ -20,12 +20,12 @@ constexpr float kLeastSecondRatio = 0.5F;
 constexpr float kLeastThirdRatio = 0.08F;
 constexpr float kLeastScale = 0.693F;  // log 2
 
-// Curvatures are stored on a scale on which their tolerance is one unit everywhere.
+// Curvatures are stored on a warped scale. On it their tolerance is one unit everywhere.
 constexpr float kMostWarped = 6;
 
 constexpr float kNormalChord = 0.5177F;  // 2 sin 15 degrees
 
-/// Bytes for [low, high].
+/// Maps the interval [low, high] to bytes.
 struct Bytes {
   float low;
   float high;
@@ -33,7 +33,7 @@ struct Bytes {
   std::uint8_t of(float value) const {
     return static_cast<std::uint8_t>(0.5 + std::clamp((value - low) / step(), 0.0F, 255.0F));
   }
-  /// In bytes, rounded down: both values have been rounded.
+  /// Returns a tolerance in bytes. It is rounded down, because both values have been rounded.
   constexpr std::uint8_t tolerance(float width) const {
     return static_cast<std::uint8_t>(width / step());
   }
@@ -66,8 +66,8 @@ int bin(float value, float least, float width, int bins) {
   return std::clamp(static_cast<int>((value - least) / width), 0, bins - 1);
 }
 
-/// A normal in the frame of its triangle: along the triangle's normal, the longest side, the
-/// height.
+/// Returns a normal in the frame of its triangle. The axes are the triangle's normal, the longest
+/// side and the height.
 Vector3f normal_of(const Invariants& invariants, int corner) {
   const float a = kShare.low + kShare.step() * invariants[kNormals + 2 * corner];
   const float b = kShare.low + kShare.step() * invariants[kNormals + 2 * corner + 1];
@@ -76,7 +76,7 @@ Vector3f normal_of(const Invariants& invariants, int corner) {
   return {a, b, negative ? -rest : rest};
 }
 
-/// Sixteen bytes in one register, as GCC and Clang have them on every machine.
+/// Holds sixteen bytes in one register. GCC and Clang have this type on every machine.
 using SixteenBytes = std::uint8_t __attribute__((vector_size(kInvariants)));
 
 SixteenBytes bytes_of(const Invariants& invariants) {
@@ -88,7 +88,8 @@ SixteenBytes bytes_of(const Invariants& invariants) {
 bool within_tolerances(SixteenBytes a, SixteenBytes b) {
   const SixteenBytes larger = a > b ? a : b;
   const SixteenBytes smaller = a > b ? b : a;
-  const auto beyond = (larger - smaller) > bytes_of(kTolerances);  // bytes of ones where so
+  const auto beyond =
+      (larger - smaller) > bytes_of(kTolerances);  // 255 in each byte that is beyond, else 0
   std::array<std::uint64_t, 2> halves;
   std::memcpy(halves.data(), &beyond, sizeof halves);
   return (halves[0] | halves[1]) == 0;
@@ -110,7 +111,7 @@ std::uint64_t packed(const Corners& corners) {
   return std::uint64_t{corners[0]} << 32 | std::uint64_t{corners[1]} << 16 | corners[2];
 }
 
-/// Holds what belongs to one feature of a triplet, whatever its triangle is.
+/// Holds what a triplet needs of one feature.
 struct Corner {
   Vector3f position;
   Vector3f normal;
@@ -124,7 +125,7 @@ class LevelTriplets {
   LevelTriplets(const TripletOptions& options, std::vector<Triplet>& result)
       : options_(options), result_(result) {}
 
-  /// Of the features of one level, the first of which has the number `first`.
+  /// Adds the triplets of one level. `first` is the index of its first feature.
   void add(std::span<const OrientedFeature> of_level, float sigma, std::size_t first) {
     first_ = first;
     sigma_ = sigma;
@@ -139,10 +140,11 @@ class LevelTriplets {
   }
 
  private:
-  static constexpr std::uint16_t kNobody = 0xffff;  // kMostFeatures is no index
+  static constexpr std::uint16_t kNobody = 0xffff;  // no feature has this index
 
-  /// Those of a feature and two of its neighbours that no feature before it has entered: one has
-  /// that is neighbour to this one and has the other two as its own neighbours.
+  /// Enters the triangles of a feature and two of its neighbours. It leaves out triangles that were
+  /// entered from one of these neighbours, namely an earlier feature that has the two other corners
+  /// as its own neighbours.
   void enter_triangles_of(std::size_t i) {
     const std::span<const std::uint16_t> near = near_.of(i);
     const double nearest = options_.nearest * sigma_;
@@ -172,7 +174,7 @@ class LevelTriplets {
     number_[i] = kNobody;
   }
 
-  /// Puts three in order; equal ones stay as they are.
+  /// Sorts three values. Equal values keep their order.
   template <typename Value, typename Before>
   static void order(std::array<Value, 3>& three, const Before& before) {
     if (before(three[1], three[0])) std::swap(three[0], three[1]);
@@ -202,7 +204,8 @@ class LevelTriplets {
     }
     std::array<int, 3> permuted = {0, 1, 2};
     do {
-      // What the other side measured as shorter may be longer here, within the tolerance.
+      // In the model a side may be the shorter one although here it is the longer one, within the
+      // tolerance.
       const float slack = kRatioTolerance * all[permuted[0]];
       if (all[permuted[1]] <= all[permuted[0]] + slack &&
           all[permuted[2]] <= all[permuted[1]] + slack &&
@@ -256,12 +259,14 @@ class LevelTriplets {
   float sigma_ = 1;
   std::vector<Corner> corners_;
   NearFeatures near_;
-  // Of the feature at hand:
-  std::vector<std::uint16_t> number_;  ///< which of its neighbours each feature is
-  std::vector<std::uint8_t> entered_;  ///< whether an earlier neighbour has another, or itself
+  // These vectors belong to the feature whose triangles are being entered.
+  std::vector<std::uint16_t> number_;  ///< Place of each feature among its neighbours.
+  /// (neighbours, neighbours + 1) 1 where an earlier neighbour has another neighbour, or the
+  /// feature itself (last column), as a neighbour of its own.
+  std::vector<std::uint8_t> entered_;
 };
 
-/// By cell, then corners.
+/// Returns the triplets sorted by cell, then corners.
 std::vector<Triplet> sorted(const std::vector<Triplet>& triplets) {
   struct Key {
     std::uint64_t codes_and_corners;

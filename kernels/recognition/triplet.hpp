@@ -16,7 +16,7 @@ struct OrientedFeature {
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();    ///< Unit normal of the smoothed surface.
   float scale_free_gaussian = 0;                       ///< sign(K) sqrt(|K|) sigma.
   float scale_free_mean = 0;                           ///< H sigma.
-  float value = 0;        ///< Its value, scale-free: K sigma^2, H sigma or torsion sigma.
+  float value = 0;        ///< Scale-free value: K sigma^2, H sigma or torsion sigma.
   std::uint8_t code = 0;  ///< See `feature_code`.
   std::uint8_t level = 0;
 };
@@ -42,8 +42,11 @@ inline constexpr std::size_t kMostFeatures = 65535;
 inline constexpr int kSecondRatioBins = 7;  ///< Bins of middle / longest side, from 0.5.
 inline constexpr int kThirdRatioBins = 12;  ///< Bins of shortest / longest side, from 0.08.
 inline constexpr int kScaleBins = 8;        ///< Bins of log(longest side / sigma), from log 2.
+/// The number of shapes.
 inline constexpr int kShapes = kSecondRatioBins * kThirdRatioBins * kScaleBins;
+/// The number of triples of feature codes.
 inline constexpr int kCodeTriples = kFeatureCodes * kFeatureCodes * kFeatureCodes;
+/// The number of cells.
 inline constexpr int kTripletCells = kShapes * kCodeTriples;
 
 /// The number of invariants of a triplet.
@@ -63,13 +66,14 @@ struct Triplet {
   friend bool operator==(const Triplet&, const Triplet&) = default;
 };
 
-// These tolerances tell how much one feature may differ that is seen twice. That of scale-free
+// These tolerances tell how much two views of one feature may differ. The tolerance of scale-free
 // curvatures is kCurvatureTolerance plus kCurvatureSlope times their size.
-inline constexpr float kScaleTolerance = 0.35F;  ///< Tolerance of log(length / sigma).
-inline constexpr float kCurvatureTolerance = 0.25F;
-inline constexpr float kCurvatureSlope = 0.35F;
+inline constexpr float kScaleTolerance = 0.35F;       ///< Tolerance of log(length / sigma).
+inline constexpr float kCurvatureTolerance = 0.25F;   ///< Tolerance of small curvatures.
+inline constexpr float kCurvatureSlope = 0.35F;       ///< Tolerance over the size of curvatures.
 inline constexpr float kCosNormalTolerance = 0.866F;  ///< Least cosine between normals: 30 degrees.
 
+/// Says which features are joined to triplets.
 struct TripletOptions {
   int neighbours = 10;       ///< Nearest features within the band that each is joined with.
   double nearest = 2.5;      ///< Least side, in sigma of the level.
@@ -92,7 +96,7 @@ std::vector<Triplet> local_triplets(const OrientedFeatures& features,
 /// may match lies there.
 std::vector<std::uint32_t> cells_around(std::uint32_t cell);
 
-/// Tells whether two triplets of cells next to each other may be one triplet, seen twice: side
+/// Tells whether two triplets of neighbouring cells may be two views of one triplet: side
 /// ratios within 0.09, log scale within 0.35, curvatures at each corner within 0.25 + 0.35 of their
 /// size, normals within 30 degrees under the rotation that the triangles fix.
 bool compatible(const Invariants& a, const Invariants& b);

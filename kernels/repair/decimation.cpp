@@ -10,11 +10,11 @@
 namespace semigeo::kernels {
 namespace {
 
-/// The share of its edge length that counts as distance of a vertex: where all is flat, small
-/// regions come first.
+/// The distance of a vertex counts as at least this share of its mean edge length. So small regions
+/// come first where the surface is flat.
 constexpr double kSizeMatters = 1e-6;
-/// The factor by which a removal may move the surface farther than its key said. Beyond it, without
-/// a tolerance, it waits for its turn.
+/// The factor by which a removal may move the surface farther than its key. A removal that moves it
+/// farther goes back into the queue with its true key, if there is no tolerance.
 constexpr double kPatience = 1.5;
 
 class Decimation {
@@ -101,8 +101,8 @@ class Decimation {
     }
   }
 
-  /// Collects the vertex itself and all that its faces cover, each with the face of the cover that
-  /// is nearest. Returns the largest distance.
+  /// Collects the vertex itself and all removed vertices that its faces cover. Each gets the
+  /// nearest face of the new cover. Returns the largest distance.
   double find_covering_faces(std::span<const Triangle> cover) {
     covered_.assign(1, {region_.vertex, 0, 0.0f});
     for (const std::int32_t h : region_.spokes)
@@ -140,7 +140,8 @@ class Decimation {
         ++kept;
         continue;
       }
-      // It cannot be farther than the face that covers it; the margin is for rounding.
+      // The surface is not farther than the face that covers the vertex. The margin is for
+      // rounding.
       const double limit = 1.001 * static_cast<double>(covered_at_[v]) + 1e-30;
       const NearestPoint found = nearest.nearest(surface_.points[v].cast<double>(), limit);
       const double distance =
@@ -153,7 +154,7 @@ class Decimation {
 
   struct Covered {
     std::int32_t vertex;
-    std::int32_t face;  ///< of the cover
+    std::int32_t face;  ///< Index of the face in the cover.
     float distance;
   };
 
@@ -161,10 +162,11 @@ class Decimation {
   DecimationOptions options_;
   ThinningSurface thinning_;
   Queue queue_;
-  std::vector<std::uint32_t> version_;       ///< of a vertex' region; older candidates are void
-  std::vector<std::int32_t> first_covered_;  ///< face -> removed vertex that it covers
-  std::vector<std::int32_t> next_covered_;   ///< removed vertex -> next one under the same face
-  std::vector<float> covered_at_;            ///< distance of a removed vertex from its face
+  std::vector<std::uint32_t>
+      version_;  ///< Version of each vertex' region. Older candidates are void.
+  std::vector<std::int32_t> first_covered_;  ///< First removed vertex that each face covers.
+  std::vector<std::int32_t> next_covered_;   ///< Next removed vertex under the same face.
+  std::vector<float> covered_at_;            ///< Distance of each removed vertex from its face.
   std::int64_t left_ = 0;
   ThinningSurface::Region region_;
   ThinningSurface::Region neighbour_;

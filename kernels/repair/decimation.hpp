@@ -9,6 +9,7 @@
 
 namespace semigeo::kernels {
 
+/// Says how far a surface is decimated.
 struct DecimationOptions {
   /// The greatest distance that an original vertex may have from the result, in the units of the
   /// points. With infinity only the target counts.
@@ -19,6 +20,7 @@ struct DecimationOptions {
   bool measure = true;
 };
 
+/// Holds a decimated surface and what was removed.
 struct DecimatedSurface {
   Surface surface;                          ///< What is left, in the old order.
   std::vector<std::int32_t> source_vertex;  ///< (N) Index of each vertex in the input.

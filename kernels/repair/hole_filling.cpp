@@ -16,7 +16,7 @@ constexpr double kSpanningRadius = 0.5;
 
 struct PartSize {
   double area = 0;
-  double radius = 0;  ///< mean distance of the vertices from their centroid
+  double radius = 0;  ///< Mean distance of the vertices from their centroid.
 };
 
 std::vector<PartSize> part_sizes(const Surface& surface) {
@@ -69,7 +69,7 @@ BoundaryLoop trace_loop(const Surface& surface, std::int32_t first) {
     loop.length += (surface.points[w] - surface.points[v]).cast<double>().norm();
     v = w;
   } while (v != first);
-  // Faces that fill it run the other way.
+  // The faces that fill the loop run in the opposite direction.
   std::reverse(loop.vertices.begin() + 1, loop.vertices.end());
   return loop;
 }

@@ -25,17 +25,18 @@ struct BoundaryLoop {
 /// up.) The cost is linear.
 std::vector<BoundaryLoop> boundary_loops(const Surface& surface);
 
-/// Counts what became of the boundary loops.
+/// Counts which boundary loops were filled, and why the others were left open.
 struct HoleCounts {
-  std::int64_t loops = 0;
-  std::int64_t filled = 0;
-  std::int64_t outer = 0;         ///< Loops left: the outer boundary of an open part.
-  std::int64_t too_long = 0;      ///< Loops left: more edges than the limit.
-  std::int64_t unsplittable = 0;  ///< Loops left: no way of filling them is valid.
+  std::int64_t loops = 0;         ///< Number of all loops.
+  std::int64_t filled = 0;        ///< Number of loops that were filled.
+  std::int64_t outer = 0;         ///< Number of loops that are outer boundaries.
+  std::int64_t too_long = 0;      ///< Number of loops with more edges than the limit.
+  std::int64_t unsplittable = 0;  ///< Number of loops that have no valid filling.
 
   bool operator==(const HoleCounts&) const = default;
 };
 
+/// Holds a surface with filled holes.
 struct FilledSurface {
   Surface surface;  ///< Old vertices and faces keep their indices, those of the patches follow.
   std::vector<std::uint8_t> vertex_filled;  ///< (N) 1 where filling made the vertex.
@@ -54,7 +55,7 @@ FilledSurface insert_patches(const Surface& surface, const std::vector<BoundaryL
 
 /// Fills every hole of at most `max_edges` edges except the outer boundaries. No edge becomes
 /// non-manifold, and faces are oriented like their neighbours. A hole that cannot be filled is left
-/// and counted, which is no error. The function is serial; to share the work out, call
+/// and counted, which is no error. The function is serial. To fill holes on several threads, call
 /// `boundary_loops`, `make_hole_patch` for each fillable loop, and `insert_patches`. Source: thesis
 /// 5.1.
 FilledSurface fill_holes(const Surface& surface, std::int64_t max_edges,

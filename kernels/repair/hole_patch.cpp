@@ -18,21 +18,22 @@
 namespace semigeo::kernels {
 namespace {
 
-/// The number of rounds in which vertices are inserted; each round at least halves the area of the
+/// The number of rounds in which vertices are inserted. Each round at least halves the area of the
 /// faces.
 constexpr int kRounds = 24;
-/// The number of fairings: each changes the shape, and with it the weights that it was computed
-/// with.
+/// The number of fairings. A fairing changes the shape, and the next one uses the weights of the
+/// new shape.
 constexpr int kFairings = 2;
 /// The number of rings of faces round the hole that tell how the surface continues.
 constexpr int kRings = 4;
-/// The shortest waves that continue, in edges: shorter ones would be noise that the patch
-/// amplifies.
+/// The length, in edges, of the shortest waves that the patch continues. Shorter waves are noise,
+/// which the patch would amplify.
 constexpr double kWaveLength = 5;
-/// The number of edges of the longest loop for `cover_loop`, whose time grows with the third power.
+/// The number of edges of the longest loop that `cover_loop` gets. Its time grows with the third
+/// power of that number.
 constexpr std::int32_t kLongestCover = 512;
 
-/// Describes a boundary loop of a surface, as points.
+/// Holds a boundary loop of a surface and its points.
 struct Rim {
   const Surface& surface;
   std::span<const std::int32_t> loop;   ///< Vertices of the surface.
@@ -80,8 +81,8 @@ std::vector<Eigen::Vector3d> normals_beyond(const Rim& rim) {
   return normals;
 }
 
-/// Covers a part of the loop that crosses itself seen from any side. Appends the triangles; false
-/// if there is no cover.
+/// Covers a part of the loop that crosses itself seen from any side, and appends the triangles.
+/// Returns false if there is no cover.
 bool cover_sub_loop(const Rim& rim, const std::vector<std::int32_t>& sub_loop,
                     std::vector<Triangle>& triangles, double& folded_area) {
   const auto n = static_cast<std::int32_t>(sub_loop.size());
@@ -92,7 +93,7 @@ bool cover_sub_loop(const Rim& rim, const std::vector<std::int32_t>& sub_loop,
   for (std::int32_t k = 0; k < n; ++k) {
     const std::int32_t v = sub_loop[k];
     points.push_back(rim.points[v]);
-    // The face beyond a splitting line is not known.
+    // A splitting line has no known face on its other side.
     const bool on_rim = sub_loop[k + 1 == n ? 0 : k + 1] == (v + 1 == rim.size() ? 0 : v + 1);
     normals.push_back(on_rim ? beyond[v] : Eigen::Vector3d::Zero());
   }
@@ -105,7 +106,8 @@ bool cover_sub_loop(const Rim& rim, const std::vector<std::int32_t>& sub_loop,
   return !cover.triangles.empty();
 }
 
-/// Returns triangles between the vertices of the loop that fill it; none if no way is valid.
+/// Returns triangles between the vertices of the loop that fill it. There are none if no filling is
+/// valid.
 std::vector<Triangle> triangulate(const Rim& rim) {
   if (rim.bounds_single_triangle()) return {};
   const auto joined = [&](std::int32_t a, std::int32_t b) { return rim.joined(a, b); };
@@ -128,8 +130,8 @@ std::vector<Triangle> triangulate(const Rim& rim) {
   return triangles;
 }
 
-/// The patch while it is refined: vertices 0 ... n - 1 are the loop, vertices that come later are
-/// new.
+/// Holds the patch while it is refined. Vertices 0 ... n - 1 are those of the loop, and later ones
+/// are new.
 class Patch {
  public:
   Patch(const Rim& rim, std::vector<Triangle> triangles);
@@ -152,7 +154,7 @@ class Patch {
   std::vector<Eigen::Vector3d> points_;
   Connectivity mesh_;
   SurfaceEditor editor_;
-  std::vector<double> edge_length_;  ///< Wanted at each vertex.
+  std::vector<double> edge_length_;  ///< Wanted edge length at each vertex.
 };
 
 Patch::Patch(const Rim& rim, std::vector<Triangle> triangles)
@@ -162,7 +164,7 @@ Patch::Patch(const Rim& rim, std::vector<Triangle> triangles)
       editor_(mesh_) {
   const Surface& surface = rim.surface;
   for (const std::int32_t v : rim.loop) {
-    // The mean over the edges of the fan.
+    // It is the mean over the edges of the fan.
     double sum = 0;
     int count = 0;
     for (const std::int32_t h : outgoing(surface, v)) {
@@ -186,8 +188,8 @@ bool Patch::is_delaunay(std::int32_t h) const {
   return cot(h) + cot(mesh_.twin[h]) >= -1e-6;
 }
 
-/// Turns the edge of two faces to the other diagonal, unless that is an edge already or folds the
-/// patch.
+/// Flips an edge to the other diagonal of its two faces, unless the diagonal is an edge already or
+/// the patch would fold.
 bool Patch::flip(std::int32_t h) {
   const std::int32_t t = mesh_.twin[h];
   const std::int32_t a = mesh_.origin(h);
@@ -210,7 +212,7 @@ void Patch::make_delaunay() {
   for (std::int32_t f = 0; f < static_cast<std::int32_t>(mesh_.face_count()); ++f)
     for (int i = 0; i < 3; ++i)
       if (mesh_.twin[halfedge(f, i)] > halfedge(f, i)) pending.push_back(halfedge(f, i));
-  // On a bent patch flips could go round in circles.
+  // The number of flips is limited, because on a bent patch they could go on for ever.
   auto budget = 20 * mesh_.face_count();
   while (!pending.empty() && budget > 0) {
     const std::int32_t h = pending.back();
@@ -243,10 +245,10 @@ void Patch::insert_at_centroid(std::int32_t face) {
   editor_.split_face(face);
 }
 
-/// Makes the wanted edges so long that the patch needs no more than so many vertices.
+/// Makes the wanted edges so long that the patch needs at most this number of new vertices.
 void Patch::limit_density(std::int32_t max_new_vertices) {
   const double area = area_of(points_, mesh_.triangles);
-  // Two equilateral triangles for each vertex.
+  // Each vertex takes the area of two equilateral triangles.
   const double shortest = std::sqrt(area / std::max(max_new_vertices, 1) * 2 / std::numbers::sqrt3);
   for (double& length : edge_length_) length = std::max(length, shortest);
 }
@@ -263,12 +265,12 @@ void Patch::refine(std::int32_t max_new_vertices) {
   }
 }
 
-/// The patch with the faces round it, `rings` deep.
+/// Holds the patch with some rings of faces round it.
 struct Patch::Surroundings {
-  std::vector<Eigen::Vector3d> points;  ///< those of the patch first
+  std::vector<Eigen::Vector3d> points;  ///< Points of the patch, then of the faces round it.
   std::vector<PlateRole> roles;
-  std::vector<Triangle> triangles;  ///< without those of the patch
-  double mean_edge_length = 0;      ///< of those triangles
+  std::vector<Triangle> triangles;  ///< Triangles round the patch.
+  double mean_edge_length = 0;      ///< Mean edge length of those triangles.
 };
 
 Patch::Surroundings Patch::surroundings(int rings) const {
@@ -276,7 +278,7 @@ Patch::Surroundings Patch::surroundings(int rings) const {
   Surroundings result;
   result.points = points_;
   result.roles.assign(points_.size(), PlateRole::kFree);
-  std::unordered_map<std::int32_t, std::int32_t> index;  // of vertices of the surface
+  std::unordered_map<std::int32_t, std::int32_t> index;  // index of each vertex of the surface
   std::unordered_set<std::int32_t> faces;
   for (std::int32_t k = 0; k < rim_.size(); ++k) {
     index.emplace(rim_.loop[k], k);
@@ -294,7 +296,7 @@ Patch::Surroundings Patch::surroundings(int rings) const {
           const auto [entry, is_new] = index.emplace(w, here);
           if (is_new) {
             result.points.push_back(surface.points[w].cast<double>() - rim_.origin);
-            // Fans have to be closed.
+            // Vertices without a closed fan have to be held.
             const bool held = depth == rings || surface.on_boundary(w);
             result.roles.push_back(held ? PlateRole::kHeld : PlateRole::kTied);
             next_ring.push_back(w);

@@ -9,11 +9,12 @@
 
 namespace semigeo::kernels {
 
+/// Says how a hole is filled.
 struct HolePatchOptions {
   /// Tells whether faces are split until they are about as small as those round the hole, and
   /// continue the surface without a crease. Without it a patch has no vertices of its own.
   bool refine = true;
-  /// The number of new vertices that a hole may take, nearly; a hole that would take more gets
+  /// The approximate largest number of new vertices of a hole. A hole that would take more gets
   /// larger faces away from its rim.
   std::int32_t max_new_vertices = 20000;
 };

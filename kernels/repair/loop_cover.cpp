@@ -8,13 +8,14 @@
 namespace semigeo::kernels {
 namespace {
 
-/// An edge of length l bent by 90 degrees costs as much as an area of l^2 / 4.
+/// The weight of bending. An edge of length l that is bent by 90 degrees costs as much as an area
+/// of l^2 / 4.
 constexpr double kBending = 0.25;
-/// Neighbours fold back on each other if the cosine between their normals is below this.
+/// The cosine between the normals of two neighbours below which they fold back on each other.
 constexpr double kFold = -0.85;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Computes the least costs of all stretches of a loop, the shortest first.
+/// Computes the least cost of all stretches of a loop, from the shortest to the longest.
 class Cover {
  public:
   Cover(std::span<const Eigen::Vector3d> loop, std::span<const Eigen::Vector3d> normals)
@@ -53,12 +54,12 @@ class Cover {
   }
 
  private:
-  /// The part of the loop from one vertex to a later one, closed by the line between them.
+  /// Describes the cover of a part of the loop: from one vertex to a later one, and straight back.
   struct Stretch {
     double cost = kInfinity;
-    std::int32_t tip = -1;  ///< third corner of the triangle at that line; -1: an edge of the loop
-    Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of that triangle
-    double area = 0;                                   ///< of that triangle
+    std::int32_t tip = -1;  ///< Third corner of the triangle at the straight line; -1: no triangle.
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< Normal of that triangle.
+    double area = 0;                                   ///< Area of that triangle.
   };
 
   Stretch& at(std::int32_t i, std::int32_t k) {
@@ -93,8 +94,8 @@ class Cover {
 
   std::span<const Eigen::Vector3d> loop_;
   std::int32_t size_;
-  std::vector<Stretch> stretches_;  ///< (n, n), upper triangle
-  Eigen::Vector3d closing_normal_;  ///< across the edge from the last to the first vertex
+  std::vector<Stretch> stretches_;  ///< (n, n) Only the upper triangle is used.
+  Eigen::Vector3d closing_normal_;  ///< Normal across the edge from the last to the first vertex.
 };
 
 }  // namespace

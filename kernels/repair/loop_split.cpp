@@ -13,7 +13,7 @@ namespace {
 constexpr int kExhaustive = 128;
 /// The number of vertices from which splits of longer loops are tried.
 constexpr int kStarts = 24;
-/// The share of a longer loop, one over this, that a split must leave on each side.
+/// A split of a longer loop must leave at least 1 / kLeastShare of it on each side.
 constexpr int kLeastShare = 8;
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -48,7 +48,7 @@ std::span<const Triangle> LoopSplitter::split_as_far_as_possible(
   return triangles_;
 }
 
-/// Splits all sub-loops, seen against `normal`, or, if that is zero, each against its own.
+/// Splits all sub-loops along `normal`, or, if that is zero, each along its own normal.
 bool LoopSplitter::split_all(std::span<const Eigen::Vector3d> loop, const Joined& joined,
                              const Eigen::Vector3d& normal,
                              std::vector<std::vector<std::int32_t>>* stuck) {
@@ -85,7 +85,7 @@ bool LoopSplitter::split_all(std::span<const Eigen::Vector3d> loop, const Joined
   return true;
 }
 
-/// Returns twice the vector area of the current sub-loop; zero if that is rounding only.
+/// Returns twice the vector area of the current sub-loop, or zero if it is nothing but rounding.
 Eigen::Vector3d LoopSplitter::own_normal(std::span<const Eigen::Vector3d> loop) const {
   const Eigen::Vector3d& anchor = loop[current_[0]];
   Eigen::Vector3d area = Eigen::Vector3d::Zero();
@@ -100,7 +100,7 @@ Eigen::Vector3d LoopSplitter::own_normal(std::span<const Eigen::Vector3d> loop) 
   return area;
 }
 
-/// Projects the current sub-loop, seen against `normal`. Returns false if that is zero.
+/// Projects the current sub-loop along `normal`. Returns false if that is zero.
 bool LoopSplitter::project(std::span<const Eigen::Vector3d> loop, const Eigen::Vector3d& normal) {
   const double length = normal.norm();
   if (!(length > 0)) return false;
@@ -162,12 +162,12 @@ double LoopSplitter::side(int i, int j, int k) const {
   return cross(projected_[j] - projected_[i], projected_[k] - projected_[i]);
 }
 
-/// Returns the ratio of the split by the plane through i < j; anything up to `at_least` if that is
-/// invalid or not above it.
+/// Returns the ratio of the split by the plane through i < j. If the split is invalid, or its ratio
+/// is not above `at_least`, the result is any number up to `at_least`.
 double LoopSplitter::plane_ratio(int i, int j, double at_least) const {
   const double length2 = (projected_[j] - projected_[i]).squaredNorm();
   if (!(length2 > 0)) return 0;
-  // The neighbours tell nearly always.
+  // The neighbours of i and j decide in nearly all cases.
   double least = std::min(
       {-side(i, j, i + 1), -side(i, j, j - 1), side(i, j, after(j)), side(i, j, before(i))});
   const double enough = at_least * length2;
@@ -184,7 +184,7 @@ double LoopSplitter::plane_ratio(int i, int j, double at_least) const {
   return least / length2;
 }
 
-/// Tells whether the line to j leaves vertex i into the inside of the loop.
+/// Tells whether the line from i to j starts into the inside of the loop.
 bool LoopSplitter::inside_corner(int i, int j) const {
   const int a = before(i);
   const int b = after(i);
@@ -203,8 +203,8 @@ bool LoopSplitter::crosses(int i, int j, int k) const {
   return !((c > 0 && d > 0) || (c < 0 && d < 0));
 }
 
-/// Returns the ratio of the split along the diagonal i < j, with distances to the line between the
-/// two; 0 if it leaves the inside of the loop.
+/// Returns the ratio of the split along the diagonal i < j, with distances to that line instead of
+/// a plane. The result is 0 if the diagonal leaves the inside of the loop.
 double LoopSplitter::diagonal_ratio(int i, int j) const {
   const double length = (projected_[j] - projected_[i]).norm();
   if (!(length > 0) || !inside_corner(i, j) || !inside_corner(j, i)) return 0;

@@ -10,6 +10,7 @@
 
 namespace semigeo::kernels {
 
+/// Says which splits of a loop are valid.
 struct LoopSplitOptions {
   /// The least ratio of a split: the smallest distance of another vertex to the splitting plane,
   /// over the length of the splitting line.

@@ -10,11 +10,11 @@
 namespace semigeo::kernels {
 namespace {
 
-/// Cotangents outside would give negative weights, or let single slivers rule.
+// Cotangents are limited to this interval. Others would give negative weights, or let single
+// slivers dominate.
 constexpr double kLeastCotangent = 0.05;
 constexpr double kLargestCotangent = 5;
-/// The distance from the centroid, in radii of the mesh, beyond which a vertex has been thrown out
-/// of it.
+/// The greatest distance from the centroid, in radii of the mesh, that a vertex may have.
 constexpr double kReach = 3;
 
 std::vector<double> vertex_areas(const std::vector<Eigen::Vector3d>& points,
@@ -37,10 +37,10 @@ double limited_cotangent(const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
   return std::clamp(u.dot(v) / sine, kLeastCotangent, kLargestCotangent);
 }
 
-/// Holds linear equations in the places of the vertices that move.
+/// Holds linear equations for the places of the vertices that move.
 struct Equations {
-  Eigen::SparseMatrix<double> matrix;              ///< (rows, moving vertices)
-  Eigen::Matrix<double, Eigen::Dynamic, 3> right;  ///< (rows, 3)
+  Eigen::SparseMatrix<double> matrix;              ///< (rows, moving vertices) Left side.
+  Eigen::Matrix<double, Eigen::Dynamic, 3> right;  ///< (rows, 3) Right side.
 };
 
 /// Returns the equations. `column` holds the column of each moving vertex and -1 for the held ones;
@@ -61,7 +61,7 @@ Equations plate_equations(const std::vector<Eigen::Vector3d>& points,
     else
       equations.right.row(row) -= value * points[vertex].transpose();
   };
-  // Laplacians, times the root of the area that each stands for.
+  // Each Laplacian is multiplied by the square root of the area that it stands for.
   for (const Triangle& t : triangles)
     for (int i = 0; i < 3; ++i) {
       const std::int32_t a = t[i];
@@ -87,7 +87,7 @@ Equations plate_equations(const std::vector<Eigen::Vector3d>& points,
   return equations;
 }
 
-/// Tells whether all places are finite and somewhere near the mesh.
+/// Tells whether all places are finite and within kReach of the mesh.
 bool plausible(const Eigen::MatrixXd& places, const std::vector<Eigen::Vector3d>& points) {
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
   for (const auto& p : points) centroid += p / static_cast<double>(points.size());

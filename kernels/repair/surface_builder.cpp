@@ -12,7 +12,8 @@
 namespace semigeo::kernels {
 namespace {
 
-/// Returns zero, or the middle of the bounding box rounded to a power of ten below its size.
+/// Returns the origin of a surface: zero, or the centre of the bounding box, rounded to a power of
+/// ten below the size of the box.
 Eigen::Vector3d choose_origin(const std::vector<Eigen::Vector3d>& points) {
   if (points.empty()) return Eigen::Vector3d::Zero();
   const Eigen::AlignedBox3d box = bounding_box(points);
@@ -66,8 +67,8 @@ Triangle sorted(Triangle t) {
 
 /// Drops every face whose three vertices, in any order, appeared before.
 std::int64_t drop_duplicates(std::vector<Triangle>& triangles, std::int64_t vertex_count) {
-  // Bucket by lowest vertex; within a bucket equal faces sort next to each other, the first one
-  // first.
+  // Faces are sorted into buckets by their lowest vertex. Within a bucket equal faces come one
+  // after the other, in the order of the list.
   std::vector<std::int32_t> bucket(vertex_count + 1, 0);
   const auto low = [](const Triangle& t) { return std::min({t[0], t[1], t[2]}); };
   for (const Triangle& t : triangles) ++bucket[low(t) + 1];
@@ -96,8 +97,8 @@ std::int64_t drop_duplicates(std::vector<Triangle>& triangles, std::int64_t vert
   return static_cast<std::int64_t>(dropped);
 }
 
-/// Tells whether there is nothing to repair: no edge has more than two faces, the two of each run
-/// along it in opposite directions, and none lie back to back.
+/// Tells whether there is nothing to repair. No edge has more than two faces; the two faces of an
+/// edge run along it in opposite directions; and they do not have the same three vertices.
 bool is_clean(const EdgeGroups& groups, const std::vector<Triangle>& triangles) {
   const auto corner = [&](std::int32_t h) { return triangles[face_of(h)][corner_of(h)]; };
   for (std::int64_t e = 0; e < groups.edge_count(); ++e) {
@@ -110,9 +111,8 @@ bool is_clean(const EdgeGroups& groups, const std::vector<Triangle>& triangles) 
   return true;
 }
 
-/// Turns faces over until neighbours across two-faced edges agree; the larger camp of each
-/// connected set of faces keeps its orientation. A surface that cannot be oriented keeps some
-/// disagreement.
+/// Turns faces over until the two faces of each edge agree. In each connected set of faces the
+/// minority is turned. A surface that cannot be oriented keeps some edges whose faces disagree.
 std::int64_t orient(std::vector<Triangle>& triangles, std::int64_t vertex_count) {
   const auto partner = pair_twins(group_edges(triangles, vertex_count), triangles.size());
   const auto start_of = [&](std::int32_t h) { return triangles[face_of(h)][corner_of(h)]; };
@@ -130,7 +130,7 @@ std::int64_t orient(std::vector<Triangle>& triangles, std::int64_t vertex_count)
       for (int i = 0; i < 3; ++i) {
         const std::int32_t h = halfedge(f, i);
         if (partner[h] == kNone || state[face_of(partner[h])] != kUnseen) continue;
-        // Two faces agree when they run along their edge in opposite directions.
+        // Two faces agree if they run along their edge in opposite directions.
         const bool disagree = start_of(h) == start_of(partner[h]);
         const bool flip = (state[f] == kFlip) != disagree;
         state[face_of(partner[h])] = flip ? kFlip : kKeep;
@@ -148,7 +148,7 @@ std::int64_t orient(std::vector<Triangle>& triangles, std::int64_t vertex_count)
   return flipped;
 }
 
-/// Keeps faces in order as long as each of their directed edges is free; drops the others.
+/// Keeps each face whose directed edges no earlier face has, and drops the others.
 std::int64_t drop_nonmanifold(std::vector<Triangle>& triangles, std::int64_t vertex_count) {
   const EdgeGroups groups = group_edges(triangles, vertex_count);
   std::vector<std::int32_t> edge_of(4 * triangles.size(), kNone);
@@ -173,7 +173,7 @@ std::int64_t drop_nonmanifold(std::vector<Triangle>& triangles, std::int64_t ver
   return static_cast<std::int64_t>(dropped);
 }
 
-/// Gives every fan of faces beyond a vertex' first one a copy of the vertex.
+/// Copies vertices that have several fans of faces. Each fan but the first gets a copy.
 std::int64_t split_fans(Surface& surface) {
   std::vector<bool> seen(4 * surface.triangles.size(), false);
   std::vector<bool> has_fan(surface.points.size(), false);
@@ -191,7 +191,8 @@ std::int64_t split_fans(Surface& surface) {
       } else {
         has_fan[vertex] = true;
       }
-      // Anticlockwise to the end or round; then clockwise from the start, if there was an end.
+      // The fan is walked anticlockwise, all round or to its end. If it has an end, it is then
+      // walked clockwise from the start.
       const auto claim = [&](std::int32_t h) {
         seen[h] = true;
         surface.triangles[face_of(h)][corner_of(h)] = vertex;
@@ -253,7 +254,7 @@ BuiltSurface build_surface(TriangleMesh&& mesh) {
   }
   surface.triangles.shrink_to_fit();
   surface.twin = pair_twins(groups, surface.triangles.size());
-  // Both rename vertices only; the twins stay as they are.
+  // The two functions that follow only rename vertices, so the twins stay valid.
   repairs.split_vertices = split_fans(surface);
   repairs.isolated_vertices = drop_isolated(surface);
   connect(surface);

@@ -11,11 +11,11 @@
 namespace semigeo::kernels {
 namespace {
 
-/// The number of vertices beyond which a ring is not worth the time.
+/// The largest number of vertices of a ring. Larger rings would take too much time.
 constexpr std::size_t kLargestRing = 40;
-/// The least ratio of a split: flatter ones would leave needles.
+/// The least ratio of a split. A smaller one would give triangles like needles.
 constexpr double kLeastRatio = 0.02;
-/// The cosine of the angle by which a face may turn.
+/// The cosine of the greatest angle by which a face may turn.
 constexpr double kLeastCosine = 0.2;
 
 double distance_from_line(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
@@ -46,7 +46,7 @@ void ThinningSurface::examine(std::int32_t vertex, Region& region) const {
 
   const Eigen::Vector3d p = points_[vertex].cast<double>();
   const auto n = region.ring.size();
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();  // relative to the vertex
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();  // mean of the ring, relative to the vertex
   region.normal.setZero();
   region.reach = 0;
   Eigen::Vector3d a = points_[region.ring[0]].cast<double>() - p;
@@ -76,13 +76,13 @@ bool ThinningSurface::joined(std::int32_t a, std::int32_t b) const {
   return find_edge(mesh_, a, b) != kNone;
 }
 
-/// Tells whether the part and its boundaries survive the removal of the vertex.
+/// Tells whether the removal of the vertex leaves the part and its boundaries in existence.
 bool ThinningSurface::is_removable(const Region& region) const {
   const auto n = region.ring.size();
   if (n < 3 || n > kLargestRing || !(region.normal.squaredNorm() > 0)) return false;
   if (!region.closed) return !joined(region.ring.front(), region.ring.back());
   if (n > 3) return true;
-  // Not if one face is the other side of all three: a tetrahedron.
+  // In a tetrahedron one face lies across all three edges of the ring. It must stay.
   const std::int32_t across = mesh_.twin[next(region.spokes[0])];
   const std::int32_t other = mesh_.twin[next(region.spokes[1])];
   return across == kNone || other == kNone || face_of(across) != face_of(other);
@@ -106,8 +106,8 @@ std::span<const Triangle> ThinningSurface::cover(const Region& region) {
   return cover_;
 }
 
-/// Tells whether the faces of the cover, as positions in the ring, face where the region does, and
-/// at each edge of the ring where the face did that was there.
+/// Tells whether the normals of the cover's faces are near the normal of the region, and, at each
+/// edge of the ring, near the normal of the old face. The faces are positions in the ring.
 bool ThinningSurface::faces_keep_direction(const Region& region) const {
   const double area = region.normal.norm();
   const auto n = static_cast<std::int32_t>(region.ring.size());

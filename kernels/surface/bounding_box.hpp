@@ -4,8 +4,8 @@
 
 namespace semigeo::kernels {
 
-/// Returns the smallest box along the axes that holds all points, in their precision; an empty one
-/// without points. `Points` is any range of vectors of three coordinates. Linear cost.
+/// Returns the smallest axis-parallel box that holds all points, in their precision. It is empty if
+/// there are no points. `Points` is any range of vectors of three coordinates. The cost is linear.
 template <typename Points>
 auto bounding_box(const Points& points) {
   using Scalar = typename Points::value_type::Scalar;

@@ -29,7 +29,7 @@ Connectivity connect(std::vector<Triangle> triangles, std::int64_t vertex_count)
 }
 
 std::int32_t find_edge(const Connectivity& mesh, std::int32_t a, std::int32_t b) {
-  // Both fans are walked side by side, until the smaller one ends.
+  // Both fans are walked at the same time, until the smaller one ends.
   const std::array<std::int32_t, 2> start = {mesh.outgoing[a], mesh.outgoing[b]};
   std::array<std::int32_t, 2> h = start;
   while (true)

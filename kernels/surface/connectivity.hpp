@@ -37,28 +37,31 @@ constexpr std::int32_t prev(std::int32_t h) {
 /// The half-edges of an oriented two-manifold triangle mesh, open or closed, as flat arrays. Every
 /// directed edge belongs to at most one face, and the faces round a vertex form one fan.
 struct Connectivity {
-  std::vector<Triangle> triangles;     ///< (F, 3) vertices, anticlockwise seen from outside
-  std::vector<std::int32_t> twin;      ///< (4 F) opposite half-edge, or kNone on a boundary
-  std::vector<std::int32_t> outgoing;  ///< (N) a half-edge that starts at the vertex; on a boundary
-                                       ///< the one without a twin, so that `ccw` visits the whole
-                                       ///< fan
+  std::vector<Triangle> triangles;  ///< (F, 3) Vertices, anticlockwise seen from outside.
+  std::vector<std::int32_t> twin;   ///< (4 F) Opposite half-edge, or kNone on a boundary.
+  /// (N) A half-edge that starts at the vertex. On a boundary it is the one without a twin, so that
+  /// `ccw` visits the whole fan.
+  std::vector<std::int32_t> outgoing;
 
   std::int64_t vertex_count() const { return static_cast<std::int64_t>(outgoing.size()); }
   std::int64_t face_count() const { return static_cast<std::int64_t>(triangles.size()); }
 
+  /// Returns the vertex at which half-edge h starts.
   std::int32_t origin(std::int32_t h) const { return triangles[face_of(h)][corner_of(h)]; }
+  /// Returns the vertex at which half-edge h ends.
   std::int32_t target(std::int32_t h) const { return origin(next(h)); }
   /// Returns the next half-edge anticlockwise round the origin of h, or kNone past a boundary.
   std::int32_t ccw(std::int32_t h) const { return twin[prev(h)]; }
+  /// Returns whether a vertex lies on a boundary.
   bool on_boundary(std::int32_t vertex) const { return twin[outgoing[vertex]] == kNone; }
 };
 
 /// Fills `outgoing` from triangles and twins. Every vertex below `vertex_count` must have a face.
-/// Linear cost.
+/// The cost is linear.
 void choose_outgoing(Connectivity& mesh, std::int64_t vertex_count);
 
 /// Returns the connectivity of triangles over `vertex_count` vertices. The triangles must be
-/// manifold and oriented alike, with one fan of faces at each vertex. Linear cost.
+/// manifold and oriented alike, with one fan of faces at each vertex. The cost is linear.
 Connectivity connect(std::vector<Triangle> triangles, std::int64_t vertex_count);
 
 /// Finds the edge between two vertices. Returns it as the half-edge in either direction, or kNone
@@ -66,7 +69,7 @@ Connectivity connect(std::vector<Triangle> triangles, std::int64_t vertex_count)
 std::int32_t find_edge(const Connectivity& mesh, std::int32_t a, std::int32_t b);
 
 /// Fills `part` (N) with the number of the connected part of each vertex; parts are numbered by
-/// their first vertex. Returns the number of parts. Linear cost.
+/// their first vertex. Returns the number of parts. The cost is linear.
 std::int32_t number_parts(const Connectivity& mesh, std::vector<std::int32_t>& part);
 
 }  // namespace semigeo::kernels

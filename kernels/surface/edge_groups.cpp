@@ -15,7 +15,7 @@ EdgeGroups group_edges(std::span<const Triangle> triangles, std::int64_t vertex_
     return std::max(t[corner_of(h)], t[corner_of(next(h))]);
   };
 
-  // Counting sort by the lower vertex, then a small sort by the higher one.
+  // A counting sort by the lower vertex comes first, then a small sort by the higher one.
   const auto face_count = static_cast<std::int32_t>(triangles.size());
   std::vector<std::int32_t> bucket(vertex_count + 1, 0);
   for (std::int32_t f = 0; f < face_count; ++f)

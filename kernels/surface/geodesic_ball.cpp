@@ -8,9 +8,9 @@
 namespace semigeo::kernels {
 namespace {
 
-/// Returns the distance of the corner at (x, y), y > 0, from a source below the base (0, 0) -
-/// (length, 0) that lies `from_first` and `from_second` from its ends. Where the straight line
-/// misses the base, the way leads over one of its ends.
+/// Returns the distance of the corner (x, y), y > 0, from a source below the base, which runs from
+/// (0, 0) to (length, 0). The source has the distances `from_first` and `from_second` from the ends
+/// of the base. If the straight line misses the base, the path leads over one of its ends.
 double across_face(double from_first, double from_second, double length, double x, double y) {
   const auto norm = [](double a, double b) { return std::sqrt(a * a + b * b); };
   const double around = std::min(from_first + norm(x, y), from_second + norm(x - length, y));
@@ -106,7 +106,8 @@ void GeodesicBall::expand(const Connectivity& surface, std::span<const Eigen::Ve
   };
   for (const Neighbour& to : ring_) reach(to, distance + to.length);
   if (is_centre) return;
-  // Over each face, from the base between this vertex and a visited one to the third corner.
+  // Distances are carried over each face, from a base between this vertex and a visited one to the
+  // third corner.
   const auto cross = [&](const Neighbour& base, const Neighbour& to) {
     if (!base.visited || to.visited || !(base.length > 0)) return;
     const double x = to.spoke.dot(base.spoke) / base.length;

@@ -76,7 +76,7 @@ class GeodesicBall {
       return distance != other.distance ? distance > other.distance : vertex > other.vertex;
     }
   };
-  /// What is known of a vertex: its distance is final once it has been visited.
+  /// Holds what is known of a vertex. The distance is final when the vertex has been visited.
   struct Known {
     std::int32_t vertex = kNone;
     std::uint32_t ball = 0;  ///< Number of the ball that this entry belongs to; others are free.

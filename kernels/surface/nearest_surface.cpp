@@ -64,14 +64,14 @@ Eigen::Vector3d nearest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vecto
                                     const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   const Eigen::Vector3d normal = (b - a).cross(c - a);
   const double area2 = normal.squaredNorm();
-  // Above the inside of the triangle the plane is nearest, ...
+  // If p lies above the inside of the triangle, the nearest point lies in its plane.
   if (area2 > 0) {
     const double u = (c - b).cross(p - b).dot(normal);
     const double v = (a - c).cross(p - c).dot(normal);
     const double w = (b - a).cross(p - a).dot(normal);
     if (u >= 0 && v >= 0 && w >= 0) return (u * a + v * b + w * c) / (u + v + w);
   }
-  // ... elsewhere one of the sides.
+  // Otherwise the nearest point lies on one of the sides.
   Eigen::Vector3d best = nearest_on_segment(p, a, b);
   for (const Eigen::Vector3d& q : {nearest_on_segment(p, b, c), nearest_on_segment(p, c, a)})
     if ((p - q).squaredNorm() < (p - best).squaredNorm()) best = q;
@@ -110,7 +110,8 @@ NearestPoint NearestSurface::nearest(const Eigen::Vector3d& p, double limit) con
     std::size_t box;
     double squared_distance;
   };
-  // Depth first, the nearer child first: at most one box a level waits.
+  // The search goes depth first and takes the nearer child first, so that at most one box of each
+  // level waits.
   std::array<Pending, 64> pending;
   int count = 0;
   pending[count++] = {1, squared_distance(boxes_[1], p)};

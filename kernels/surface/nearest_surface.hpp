@@ -42,17 +42,19 @@ class NearestSurface {
   const Surface& surface_;
   std::vector<std::int32_t> faces_;  ///< Faces in the order of the leaves.
   std::size_t leaf_count_ = 0;       ///< A power of two.
-  std::vector<Eigen::AlignedBox3f>
-      boxes_;  ///< (2 leaf_count) Heap: the children of k are 2 k and 2 k + 1.
+  /// (2 leaf_count) Heap: the children of k are 2 k and 2 k + 1.
+  std::vector<Eigen::AlignedBox3f> boxes_;
 };
 
 /// Sums up the distances of many points from a surface.
 struct DistanceSummary {
   double maximum = 0;
   double sum = 0;
-  std::int64_t count = 0;
+  std::int64_t count = 0;  ///< Number of points.
 
+  /// Returns the mean distance, or 0 if there are no points.
   double mean() const { return count == 0 ? 0.0 : sum / static_cast<double>(count); }
+  /// Adds the distances of other points.
   void add(const DistanceSummary& other);
   bool operator==(const DistanceSummary&) const = default;
 };

@@ -9,7 +9,8 @@ namespace semigeo::kernels {
 SurfaceEditor::SurfaceEditor(Connectivity& mesh)
     : mesh_(mesh), face_count_(mesh.face_count()), vertex_count_(mesh.vertex_count()) {}
 
-/// Tells whether the fan of a has at least as many faces as that of b. The smaller one is walked.
+/// Tells whether the fan of a has at least as many faces as that of b. The cost is that of the
+/// smaller fan.
 bool SurfaceEditor::larger_fan(std::int32_t a, std::int32_t b) const {
   const std::array<std::int32_t, 2> start = {mesh_.outgoing[a], mesh_.outgoing[b]};
   std::array<std::int32_t, 2> at = start;
@@ -47,7 +48,8 @@ SurfaceEditor::Collapse SurfaceEditor::may_collapse(std::int32_t h) const {
       return {Obstacle::kPart, kNone};
   } else {
     if (mesh_.on_boundary(a) && mesh_.on_boundary(b)) return {Obstacle::kChord, kNone};
-    // Faces (b, c, d) and (a, c, d) besides (a, b, c) and (b, a, d): a tetrahedron.
+    // The part is a tetrahedron if it has the faces (b, c, d) and (a, c, d) besides (a, b, c) and
+    // (b, a, d).
     if (same_face(next(h), prev(t)) && same_face(prev(h), next(t))) return {Obstacle::kPart, kNone};
   }
   const std::int32_t kept = survivor(h);
@@ -63,7 +65,7 @@ void SurfaceEditor::unite(std::int32_t h, std::int32_t other) {
   if (other != kNone) mesh_.twin[other] = h;
 }
 
-/// Closes a face that loses the edge opposite to a corner: the half-edges across its other two
+/// Closes a face whose edge opposite to a corner is collapsed. The half-edges across its other two
 /// edges, one `into` the corner and one `from` it, become twins. `gone` is the half-edge of the
 /// face that left the corner. Returns a half-edge that leaves the vertex where the lost edge was,
 /// or kNone.
@@ -102,7 +104,7 @@ std::int32_t SurfaceEditor::add_vertex(const Birth& birth) {
   return static_cast<std::int32_t>(mesh_.outgoing.size()) - 1;
 }
 
-/// Puts another vertex into the corners of the fan that begins with half-edge `first`.
+/// Replaces the vertex of the fan that begins with half-edge `first`.
 void SurfaceEditor::move_fan(std::int32_t first, std::int32_t vertex) {
   for (const std::int32_t h : OutgoingRange(mesh_, first))
     mesh_.triangles[face_of(h)][corner_of(h)] = vertex;
@@ -115,7 +117,7 @@ void SurfaceEditor::collapse(std::int32_t h) {
   const std::int32_t first = first_after_collapse(h);
   move_fan(mesh_.outgoing[gone], kept);
 
-  // Face (a, b, c), and (b, a, d) on the other side.
+  // Face (a, b, c) is closed, and then face (b, a, d) on the other side.
   std::int32_t left = fold(prev(h), mesh_.twin[prev(h)], mesh_.twin[next(h)]);
   if (t != kNone) {
     const std::int32_t other = fold(prev(t), mesh_.twin[prev(t)], mesh_.twin[next(t)]);
@@ -128,15 +130,15 @@ void SurfaceEditor::collapse(std::int32_t h) {
   --vertex_count_;
 }
 
-/// Returns the half-edge with which the fan of the survivor will begin if that lies on a boundary,
-/// otherwise kNone. Nothing is walked, since the fan may be large.
+/// Returns the half-edge with which the fan of the survivor will begin, or kNone if the survivor
+/// will not lie on a boundary. It walks no fan, since fans may be large.
 std::int32_t SurfaceEditor::first_after_collapse(std::int32_t h) const {
   const std::int32_t t = mesh_.twin[h];
-  // On a boundary h itself is the first of its origin, and goes.
+  // If h lies on a boundary, it is the first half-edge of its origin, and is removed.
   std::int32_t first = mesh_.outgoing[mesh_.target(h)];
   if (mesh_.twin[first] != kNone) first = mesh_.outgoing[mesh_.origin(h)];
   if (mesh_.twin[first] != kNone) return kNone;
-  // The edge closes up with that of the face's other side.
+  // If the first half-edge is removed, the one across the other edge of its face takes its place.
   if (first == next(h)) return mesh_.twin[prev(h)];
   if (t != kNone && first == next(t)) return mesh_.twin[prev(t)];
   return first;
@@ -148,7 +150,7 @@ bool SurfaceEditor::may_flip(std::int32_t h) const {
 }
 
 std::int32_t SurfaceEditor::flip(std::int32_t h) {
-  // (a, b, c) and (b, a, d) become (a, d, c) and (d, b, c).
+  // The faces (a, b, c) and (b, a, d) become (a, d, c) and (d, b, c).
   const std::int32_t t = mesh_.twin[h];
   const std::int32_t f = face_of(h);
   const std::int32_t g = face_of(t);
@@ -156,7 +158,7 @@ std::int32_t SurfaceEditor::flip(std::int32_t h) {
   const std::int32_t b = mesh_.target(h);
   const std::int32_t c = mesh_.origin(prev(h));
   const std::int32_t d = mesh_.origin(prev(t));
-  // The four half-edges round them, where they were and where they will be.
+  // The four half-edges on the outline of the two faces have these old and new slots.
   const std::array<std::int32_t, 4> old = {next(t), prev(h), prev(t), next(h)};
   const std::array<std::int32_t, 4> now = {halfedge(f, 0), halfedge(f, 2), halfedge(g, 0),
                                            halfedge(g, 1)};
@@ -174,13 +176,13 @@ std::int32_t SurfaceEditor::flip(std::int32_t h) {
   return halfedge(f, 1);
 }
 
-/// Gives the smaller one of the two fans that a vertex has come to have a copy of the vertex.
-/// `starts` lie in the fans, at least one in each; if a fan is open, the half-edge with which it
-/// begins is among them.
+/// Separates the two fans of a vertex: the smaller one gets a copy of the vertex. `starts` are
+/// half-edges in the fans, at least one in each. If a fan is open, its first half-edge is among
+/// them.
 void SurfaceEditor::separate_fans(std::int32_t v, std::span<const std::int32_t> starts) {
   std::vector<std::int32_t> at(starts.begin(), starts.end());
   const auto begins = [this](std::int32_t h) { return mesh_.twin[h] == kNone; };
-  // Side by side, until one has been all the way round.
+  // All fans are walked at the same time, until one has been walked completely.
   std::size_t smaller = 0;
   for (bool found = false; !found;)
     for (std::size_t k = 0; k < starts.size() && !found; ++k) {
@@ -203,7 +205,7 @@ void SurfaceEditor::separate_fans(std::int32_t v, std::span<const std::int32_t> 
 std::array<std::int32_t, 2> SurfaceEditor::cut_cycle(std::int32_t a, std::int32_t b,
                                                      std::int32_t c) {
   const std::array<std::int32_t, 3> cycle = {a, b, c};
-  // Half-edges along the cycle, and those against it.
+  // rim[0] has the half-edges along the cycle, rim[1] those against it.
   std::array<std::array<std::int32_t, 3>, 2> rim;
   for (int i = 0; i < 3; ++i) {
     const std::int32_t h = find_edge(mesh_, cycle[i], cycle[(i + 1) % 3]);
@@ -213,10 +215,10 @@ std::array<std::int32_t, 2> SurfaceEditor::cut_cycle(std::int32_t a, std::int32_
     rim[1][i] = along ? t : h;
   }
   std::array<std::int32_t, 2> cover = {kNone, kNone};
-  std::array<std::array<std::int32_t, 2>, 3> corner;  // of the covers, at each vertex
+  std::array<std::array<std::int32_t, 2>, 3> corner;  // half-edges of the covers at each vertex
   for (int side = 0; side < 2; ++side) {
     if (rim[side] == std::array<std::int32_t, 3>{kNone, kNone, kNone}) continue;
-    // The cover of one side runs as the rim of the other: corner i of the second leaves cycle[i].
+    // The cover of one side has the orientation of the other side's rim.
     const std::array<int, 3> order = side == 0 ? std::array{0, 2, 1} : std::array{0, 1, 2};
     cover[side] = add_face({cycle[order[0]], cycle[order[1]], cycle[order[2]]});
     for (int k = 0; k < 3; ++k) {
@@ -226,9 +228,10 @@ std::array<std::int32_t, 2> SurfaceEditor::cut_cycle(std::int32_t a, std::int32_
       unite(h, rim[side][edge]);
     }
   }
-  if (cover[0] == kNone || cover[1] == kNone) return cover;  // a hole closed, no fan in two
+  if (cover[0] == kNone || cover[1] == kNone)
+    return cover;  // a hole was closed, and no fan was cut in two
   for (int i = 0; i < 3; ++i) {
-    // An open fan begins where it did, or with the cover's own edge.
+    // An open fan begins with its old first half-edge, or with an edge of the cover.
     const std::int32_t was = mesh_.outgoing[cycle[i]];
     const std::array starts = {corner[i][0], corner[i][1], was};
     separate_fans(cycle[i], std::span(starts).first(mesh_.twin[was] == kNone ? 3 : 2));
@@ -251,8 +254,8 @@ std::int32_t SurfaceEditor::split(std::int32_t h) {
   const std::int32_t a = mesh_.origin(h);
   const std::int32_t b = mesh_.target(h);
   const std::int32_t middle = add_vertex({a, b});
-  // (a, b, c) becomes (a, m, c) and (m, b, c): `g` goes from `end` to m, the new face takes the
-  // edge that left its target.
+  // The face (a, b, c) becomes (a, m, c) and (m, b, c). The target of `g` changes from `end` to m,
+  // and the new face takes the edge that started at `end`.
   const auto halve = [&](std::int32_t g) {
     const std::int32_t end = mesh_.target(g);
     const std::int32_t apex = mesh_.origin(prev(g));
@@ -278,7 +281,7 @@ std::int32_t SurfaceEditor::split(std::int32_t h) {
 std::int32_t SurfaceEditor::split_face(std::int32_t face) {
   const auto [a, b, c] = mesh_.triangles[face];
   const std::int32_t v = add_vertex({a, b, c});
-  // (a, b, c) becomes (a, b, v), (b, c, v) and (c, a, v).
+  // The face (a, b, c) becomes (a, b, v), (b, c, v) and (c, a, v).
   const std::int32_t across_b = mesh_.twin[halfedge(face, 1)];
   const std::int32_t across_c = mesh_.twin[halfedge(face, 2)];
   mesh_.triangles[face] = {a, b, v};

@@ -12,8 +12,8 @@ namespace semigeo::kernels {
 /// Edits a connectivity in place. Everything that kernels/surface/connectivity.hpp promises holds
 /// after every call. Vertices and faces keep their numbers; those that are removed leave gaps
 /// (`outgoing` and the corners of a face are kNone). New faces fill gaps or come last, new vertices
-/// come last. Points and parts are the caller's business. Costs are linear in the smallest fans
-/// involved. One editor serves one thread.
+/// come last. The caller takes care of points and parts. The cost of a call is linear in the
+/// smallest fans involved. One editor serves one thread.
 class SurfaceEditor {
  public:
   /// The mesh must outlive the editor.
@@ -27,20 +27,25 @@ class SurfaceEditor {
     std::int32_t third = kNone;
   };
 
+  /// Returns whether a face was not removed.
   bool has_face(std::int32_t f) const { return mesh_.triangles[f][0] != kNone; }
+  /// Returns whether a vertex was not removed.
   bool has_vertex(std::int32_t v) const { return mesh_.outgoing[v] != kNone; }
+  /// Returns the number of faces that are left.
   std::int64_t face_count() const { return face_count_; }
+  /// Returns the number of vertices that are left.
   std::int64_t vertex_count() const { return vertex_count_; }
   /// Returns where each vertex comes from that this editor has made, in the order of their numbers.
   const std::vector<Birth>& births() const { return births_; }
 
-  /// What prevents the collapse of an edge.
+  /// The reasons that prevent the collapse of an edge.
   enum class Obstacle {
     kNothing,
     kCycle,  ///< Both ends have a common neighbour across no face: a neck, a hole of three edges.
     kChord,  ///< The edge joins two boundary vertices through the surface: a strip.
     kPart    ///< The connected part of the edge is a triangle or a tetrahedron.
   };
+  /// Tells whether an edge can collapse.
   struct Collapse {
     Obstacle obstacle = Obstacle::kNothing;
     std::int32_t third = kNone;  ///< The common neighbour of a cycle.
@@ -87,6 +92,7 @@ class SurfaceEditor {
   /// many faces, and must not join vertices that an edge joins already.
   void remove_vertex(std::int32_t v, std::span<const Triangle> cover);
 
+  /// Counts what was removed.
   struct Dropped {
     std::int64_t vertices = 0;
     std::int64_t faces = 0;

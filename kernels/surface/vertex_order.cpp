@@ -74,7 +74,7 @@ std::vector<std::int32_t> locality_order(const Surface& surface) {
 Connectivity reordered(const Connectivity& mesh, const std::vector<std::int32_t>& order,
                        std::vector<std::int32_t>* face_order) {
   const std::vector<std::int32_t> new_vertex = positions(order, mesh.outgoing.size());
-  // Counting sort of the faces by lowest new vertex.
+  // The faces are sorted by their lowest new vertex, with a counting sort.
   const auto lowest = [&](const Triangle& t) {
     return std::min({new_vertex[t[0]], new_vertex[t[1]], new_vertex[t[2]]});
   };

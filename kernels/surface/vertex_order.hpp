@@ -8,18 +8,18 @@
 namespace semigeo::kernels {
 
 /// Returns an order of the vertices in which neighbours in space are neighbours in memory: by
-/// connected part, then along a Z-order curve. result[i] is the old index of new vertex i. A patch
-/// then finds all it touches in the first-level cache, and every part is one range of vertices.
+/// connected part, then along a Z-order curve. result[i] is the old index of new vertex i. Then
+/// all that a patch reads is in the first-level cache, and every part is one range of vertices.
 std::vector<std::int32_t> locality_order(const Surface& surface);
 
 /// Returns the same mesh with vertex i = old vertex order[i]. Faces are sorted by their lowest new
-/// vertex. Gaps are closed: vertices without faces may be left out of the order, removed faces are
-/// left out. `face_order` takes the old index of each face. Linear cost.
+/// vertex. Removed faces are left out, and `order` may leave out vertices without faces.
+/// `face_order` receives the old index of each face. The cost is linear.
 Connectivity reordered(const Connectivity& mesh, const std::vector<std::int32_t>& order,
                        std::vector<std::int32_t>* face_order = nullptr);
 
-/// Returns the mesh without gaps: what is left of vertices and faces, each in its old order.
-/// `source_vertex` takes the old index of each vertex. Linear cost.
+/// Returns the mesh without removed vertices and faces. The others keep their order.
+/// `source_vertex` receives the old index of each vertex. The cost is linear.
 Connectivity compacted(const Connectivity& mesh, std::vector<std::int32_t>& source_vertex);
 
 /// Returns the same surface in another order, as above. Parts keep their numbers when the order is

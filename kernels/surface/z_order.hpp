@@ -4,8 +4,8 @@
 
 namespace semigeo::kernels {
 
-/// Returns the low 21 bits of x with two zero bits after each: the share of one coordinate in a
-/// Z-order (Morton) code of three dimensions.
+/// Returns the low 21 bits of x with two zero bits after each of them. Three coordinates that are
+/// spread so, shifted by 0, 1 and 2 bits, and joined make a Z-order (Morton) code.
 constexpr std::uint64_t spread_bits(std::uint64_t x) {
   x &= 0x1fffff;
   x = (x | x << 32) & 0x1f00000000ffffu;

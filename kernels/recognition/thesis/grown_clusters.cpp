@@ -11,7 +11,7 @@ namespace {
 /// Holds the seven parameters of a pose.
 struct Parameters {
   double log_scale;
-  Eigen::Vector3d place;  ///< of the model's centre
+  Eigen::Vector3d place;  ///< Place of the model's centre in the scene.
   Eigen::Quaterniond rotation;
 };
 
@@ -29,7 +29,7 @@ class Cluster {
   bool near(const Parameters& p) const {
     return std::abs(p.log_scale - centre_.log_scale) <= log_scale_reach_ &&
            (p.place - centre_.place).squaredNorm() <= squared_reach_ &&
-           // Half the angle between two rotations has this cosine.
+           // The product of two unit quaternions is the cosine of half the angle between them.
            std::abs(p.rotation.dot(centre_.rotation)) >= least_cosine_;
   }
 
@@ -37,7 +37,7 @@ class Cluster {
     ++members_;
     log_scale_ += p.log_scale;
     place_ += p.place;
-    // q and -q are one rotation.
+    // The quaternions q and -q are the same rotation.
     rotation_ += (p.rotation.dot(centre_.rotation) < 0 ? -1 : 1) * p.rotation.coeffs();
     const double count = static_cast<double>(members_);
     centre_.log_scale = log_scale_ / count;
@@ -59,7 +59,7 @@ class Cluster {
  private:
   Parameters centre_;
   double log_scale_reach_;
-  double reach_;  ///< at scale 1
+  double reach_;  ///< Tolerance of the place at scale 1.
   double squared_reach_ = 0;
   double least_cosine_;
   std::int64_t members_ = 0;
@@ -72,12 +72,12 @@ class Cluster {
 
 GrownCluster largest_grown_cluster(std::span<const Similarity> poses, const Eigen::Vector3d& centre,
                                    double diagonal, const PoseTolerance& options) {
-  std::vector<Parameters> free;  // in no cluster yet
+  std::vector<Parameters> free;  // poses that are in no cluster yet
   free.reserve(poses.size());
   for (const Similarity& pose : poses)
     free.push_back({std::log(pose.scale), pose.apply(centre), Eigen::Quaterniond(pose.rotation)});
   GrownCluster largest;
-  // A cluster cannot become larger than what is free.
+  // A cluster cannot have more members than there are free poses.
   while (static_cast<std::int64_t>(free.size()) > largest.members) {
     Cluster cluster(free.front(), diagonal, options);
     free.erase(free.begin());

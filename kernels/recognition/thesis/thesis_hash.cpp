@@ -18,7 +18,7 @@ struct Order {
 struct MeasuredTriangle {
   std::array<std::uint16_t, 3> features;
   std::array<double, 3> values;
-  std::array<double, 3> sides;  ///< opposite each
+  std::array<double, 3> sides;  ///< Length of the side opposite to each feature.
 };
 
 bool collinear(const std::array<Eigen::Vector3d, 3>& p, double longest, double min_height) {
@@ -45,7 +45,8 @@ ThesisTriplet triplet_of(const MeasuredTriangle& t, const Order& order) {
   return result;
 }
 
-/// Tells whether sides descend and the strongest is the strongest, up to these tolerances.
+/// Tells whether the sides descend and no value exceeds that of the strongest corner, up to these
+/// tolerances.
 bool in_order(const MeasuredTriangle& t, const Order& order, double length, double feature) {
   const auto& c = order.corners;
   const double longest = t.sides[c[0]];
@@ -60,7 +61,8 @@ bool in_order(const MeasuredTriangle& t, const Order& order, double length, doub
 constexpr std::array<std::array<int, 3>, 6> kPermutations = {
     {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
 
-/// Returns the one order of a model; where sides or values are equal, the first.
+/// Returns the order in which a model has the triangle. If sides or values are equal, it is the
+/// first such order.
 Order order_of(const MeasuredTriangle& t) {
   Order order{{0, 1, 2}, 0};
   std::ranges::stable_sort(order.corners, std::ranges::greater(),
@@ -134,7 +136,8 @@ ThesisTable::ThesisTable(std::vector<Entry> entries, const ThesisOptions& option
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
 }
 
-/// A lies between -19 and 22, a little more where tolerances blur which feature is the strongest.
+/// Returns the cell of an address. A lies between -19 and 22, and slightly beyond if tolerances
+/// admit another feature as the strongest.
 std::size_t ThesisTable::cell_of(float address) const {
   return static_cast<std::size_t>((std::clamp(address, -25.0F, 28.0F) + 25.0F) / address_);
 }

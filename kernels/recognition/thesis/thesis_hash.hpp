@@ -13,9 +13,8 @@
 
 namespace semigeo::kernels {
 
-// Geometric hashing as the thesis has it (4.5, 5.9), to compare with: all triplets of the strongest
-// features of one kind and one level, by two numbers each. Nothing of it is used by
-// recognise_scene.
+// Geometric hashing as in the thesis (4.5, 5.9), for comparison. All triplets of the strongest
+// features of one kind and one level are hashed by two numbers. recognise_scene uses none of it.
 
 /// Holds numbers that the thesis does not name.
 struct ThesisOptions {
@@ -67,6 +66,7 @@ inline bool agree(const ThesisTriplet& a, const ThesisTriplet& b, const ThesisOp
 /// its tolerance.
 class ThesisTable {
  public:
+  /// A triplet and its model.
   struct Entry {
     ThesisTriplet triplet;
     std::uint32_t model = 0;
