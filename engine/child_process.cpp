@@ -45,7 +45,7 @@ double seconds_of(const timeval& time) {
 Descriptor open_log(const Command& command) {
   if (command.log.empty()) return open_file("/dev/null", O_WRONLY);
   if (command.log.has_parent_path()) std::filesystem::create_directories(command.log.parent_path());
-  // Appending even to an empty file, so that nothing is overwritten whoever else writes to it.
+  // Text is appended even to an empty file, so that writers do not overwrite each other.
   const int flags = O_WRONLY | O_CREAT | O_APPEND;
   Descriptor log = open_file(command.log, command.append_to_log ? flags : flags | O_TRUNC);
   if (!log) fail("cannot open " + command.log.string());
@@ -72,12 +72,12 @@ struct ChildProcesses::Child {
   }
 
   Id id = 0;
-  pid_t process = -1;  ///< until it is waited for, nobody else gets the number
-  Descriptor end;      ///< pidfd, readable when the process has ended
-  Descriptor channel;  ///< lines to and from it
+  pid_t process = -1;  ///< No other process gets this number before it is waited for.
+  Descriptor end;      ///< A pidfd, which is readable when the process has ended.
+  Descriptor channel;  ///< Carries lines in both directions.
   std::string to_send;
-  bool close_input = false;  ///< once to_send is sent
-  std::string received;      ///< the beginning of a line
+  bool close_input = false;  ///< The input is closed when `to_send` is sent.
+  std::string received;      ///< The beginning of a line.
   Clock::time_point start;
   Clock::time_point deadline = Clock::time_point::max();
   Limit exceeded = Limit::kNone;
@@ -94,14 +94,14 @@ struct ChildProcesses::Child {
 
 ChildProcesses::ChildProcesses() : wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   if (!wake_) fail("cannot make an eventfd");
-  // Inherited from some who start us, and then no child could be waited for.
+  // Some parents leave SIGCHLD ignored. Then no child could be waited for.
   struct sigaction action = {};
   if (sigaction(SIGCHLD, nullptr, &action) == 0 && action.sa_handler == SIG_IGN)
     signal(SIGCHLD, SIG_DFL);
 }
 
 ChildProcesses::~ChildProcesses() {
-  // All before the first is waited for.
+  // All children are killed before the first one is waited for.
   for (const auto& [id, child] : children_) child->signal_group(SIGKILL);
 }
 
@@ -111,8 +111,8 @@ ChildProcesses::Id ChildProcesses::start(const Command& command) {
   const Descriptor output = open_log(command);
   Descriptor input;
   if (command.converses) {
-    // One socket instead of two pipes: a write to a child that has ended is then an error, not a
-    // SIGPIPE.
+    // A socket is used instead of two pipes, because writing to a child that has ended is then an
+    // error and no SIGPIPE.
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) fail("cannot make a socket");
     child->channel = Descriptor(ends[0]);
@@ -190,12 +190,12 @@ void ChildProcesses::kill(Id id) {
   if (Child* child = find(id)) child->kill_for(Limit::kNone);
 }
 
-/// One read at most, so that no child keeps us from the others.
+/// Reads from a child, once at most, so that the other children get their turn.
 void ChildProcesses::receive(Child& child) {
   std::array<char, 65536> buffer;
   const ssize_t got = recv(child.channel.get(), buffer.data(), buffer.size(), MSG_DONTWAIT);
   if (got < 0 && (errno == EAGAIN || errno == EINTR)) return;
-  if (got <= 0) {  // closed, or reset: it ended with lines unread
+  if (got <= 0) {  // closed, or reset because the child ended with unread lines
     child.channel.close();
     return;
   }
@@ -207,15 +207,16 @@ void ChildProcesses::receive(Child& child) {
   }
   child.received.append(rest);
   if (child.received.size() > kLongestLine) {
-    child.kill_for(Limit::kLineLength);  // first, or it could end by SIGPIPE
+    child.kill_for(Limit::kLineLength);  // it comes first, or the child could end by SIGPIPE
     child.channel.close();
   }
 }
 
-/// The process has ended, and its number is still ours.
+/// Ends a child whose process has ended but was not waited for yet.
 void ChildProcesses::end(Child& child) {
-  child.signal_group(SIGKILL);  // what it has left running
-  // What it sent before. Bounded, lest somebody who left the group sends on and on.
+  child.signal_group(SIGKILL);  // ends what the child has left running
+  // Lines that it sent before are read. Their number is limited, because a process that has left
+  // the group could send for ever.
   for (std::size_t reads = 0; child.channel && reads < 64; ++reads) {
     pollfd more = {child.channel.get(), POLLIN, 0};
     if (poll(&more, 1, 0) <= 0) break;
@@ -246,7 +247,8 @@ void ChildProcesses::enforce_deadlines() {
     if (child->deadline <= now) child->kill_for(Limit::kWallTime);
 }
 
-/// Turns what has happened into events; waits until `until` or the next deadline if nothing has.
+/// Turns what has happened into events. If nothing has, it waits until `until` or the next
+/// deadline.
 void ChildProcesses::collect(Clock::time_point until) {
   std::vector<pollfd> watched = {{wake_.get(), POLLIN, 0}};
   std::vector<Child*> children;
@@ -294,7 +296,7 @@ ChildProcesses::Event ChildProcesses::wait(double seconds) {
 void ChildProcesses::wake() noexcept {
   const int error = errno;
   const std::uint64_t once = 1;
-  // It fails only when the counter is full, and then a wake is due anyway.
+  // The call fails only if the counter is full, and then `wait` wakes anyway.
   [[maybe_unused]] const ssize_t written = write(wake_.get(), &once, sizeof once);
   errno = error;
 }

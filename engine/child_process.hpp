@@ -67,8 +67,8 @@ class ChildProcesses {
     Id child;
     std::string text;  ///< The line without its newline.
   };
-  /// A child has ended. This event comes after the child's last line. What the child sent after its
-  /// last newline is dropped.
+  /// A child has ended. This event comes after the child's last line. Text after the last newline
+  /// is dropped.
   struct Ended {
     Id child;
     int exit_code;  ///< -1 if a signal ended the child.

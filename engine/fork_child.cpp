@@ -20,12 +20,12 @@ namespace {
   throw std::system_error(errno, std::generic_category(), action);
 }
 
-/// All that happens in the child.
+/// Does all the work of the child.
 [[noreturn]] void work_and_exit(const std::function<std::string()>& work, double cpu_seconds,
                                 pid_t parent, const Descriptor& answer) noexcept {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(EXIT_FAILURE);  // it ended before it could be tied to
-  // What the C library says of a crash is no sentence.
+  if (getppid() != parent) _exit(EXIT_FAILURE);  // the parent ended before prctl
+  // The messages of the C library about a crash are of no use to users.
   const Descriptor nowhere = open_file("/dev/null", O_WRONLY);
   if (nowhere) dup2(nowhere.get(), STDERR_FILENO);
   const rlimit no_core = {0, 0};

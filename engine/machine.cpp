@@ -28,7 +28,7 @@ int cores_of_affinity() {
   return CPU_COUNT_S(bytes, sets.data());
 }
 
-/// The number a file begins with; none if there is no file, or it says "max".
+/// Returns the number at the beginning of a file, or nothing if there is no file or it says "max".
 std::optional<double> number_in(const fs::path& path) {
   std::ifstream file(path);
   double number;
@@ -36,7 +36,7 @@ std::optional<double> number_in(const fs::path& path) {
   return {};
 }
 
-/// The sum of the numbers behind these names in a file of lines "name number".
+/// Returns the sum of the numbers behind these names in a file of lines "name number".
 double named_numbers_in(const fs::path& path, const std::vector<std::string_view>& names) {
   std::ifstream file(path);
   double sum = 0;
@@ -50,13 +50,13 @@ double named_numbers_in(const fs::path& path, const std::vector<std::string_view
   return sum;
 }
 
-/// Where a control group and those around it are described, innermost first.
+/// Holds the folders that describe a control group and those around it, the innermost first.
 struct GroupFolders {
   std::vector<fs::path> folders;
   bool version_2;
 };
 
-/// The groups of this process that control `controller`, version 1 or 2.
+/// Returns the groups of this process for a controller, of version 1 or 2.
 std::vector<GroupFolders> groups_of(const fs::path& root, const std::string& controller) {
   std::vector<GroupFolders> groups;
   std::ifstream file(root / "proc/self/cgroup");
@@ -69,7 +69,8 @@ std::vector<GroupFolders> groups_of(const fs::path& root, const std::string& con
     if (!version_2 && ("," + controllers + ",").find("," + controller + ",") == std::string::npos)
       continue;
     const fs::path mount = root / "sys/fs/cgroup" / (version_2 ? "" : controller);
-    // Inside a container the path may be that outside of it: what is not found is passed over.
+    // Inside a container the path may be the one outside of it. Folders that do not exist are
+    // passed over.
     GroupFolders group = {{}, version_2};
     for (fs::path path = line.substr(second + 1); path.has_relative_path();
          path = path.parent_path())
@@ -80,7 +81,7 @@ std::vector<GroupFolders> groups_of(const fs::path& root, const std::string& con
   return groups;
 }
 
-/// Cores that the quota of one group allows.
+/// Returns the number of cores that the quota of one group allows.
 double quota_of(const fs::path& folder, bool version_2) {
   std::optional<double> quota, period;
   if (version_2) {  // "max 100000" or "150000 100000"
@@ -94,7 +95,7 @@ double quota_of(const fs::path& folder, bool version_2) {
   return quota && period && *quota > 0 && *period > 0 ? *quota / *period : kUnlimited;
 }
 
-/// Bytes that one group has left: files that are only cached give way to us.
+/// Returns the bytes that one group has left. Cached files count as free.
 double room_in(const fs::path& folder, bool version_2) {
   double limit = kUnlimited;
   const auto lower = [&](const char* name) {
@@ -102,7 +103,7 @@ double room_in(const fs::path& folder, bool version_2) {
   };
   if (version_2) {
     lower("memory.max");
-    lower("memory.high");  // beyond it everything crawls
+    lower("memory.high");  // beyond it all processes become very slow
   } else {
     lower("memory.limit_in_bytes");  // a huge number = none
   }
@@ -127,7 +128,7 @@ double least(const fs::path& root, const std::string& controller, Measure measur
 }  // namespace
 
 Amount usable_resources(const fs::path& root) {
-  // A quota of 1.5 cores is used up by two threads, not by one.
+  // The number is rounded up: one thread cannot use a quota of 1.5 cores.
   const double cores =
       std::min<double>(cores_of_affinity(), std::ceil(least(root, "cpu", quota_of)));
   const double available = 1024 * named_numbers_in(root / "proc/meminfo", {"MemAvailable:"});

@@ -1,5 +1,5 @@
-// The std::thread back end of engine/parallel: every synchronisation is visible to a sanitizer.
-// Meant for tests; threads are started anew for every call.
+// The std::thread back end of engine/parallel. Every synchronisation is visible to a sanitizer. It
+// is meant for tests, as it starts threads anew for every call.
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
@@ -52,7 +52,7 @@ void Workers::run_group(const std::function<void(Group&)>& start) {
     std::mutex mutex;
     std::condition_variable changed;
     std::deque<std::function<void()>> ready;
-    int unfinished = 1;  // one for `start` itself
+    int unfinished = 1;  // `start` itself counts as one
 
     void run(std::function<void()> task) override {
       const std::scoped_lock lock(mutex);

@@ -5,7 +5,7 @@
 namespace semigeo::engine {
 
 bool Resources::fits(Amount wanted) const {
-  // Differences, for sums may overflow.
+  // Differences are compared, because sums may overflow.
   return in_use_.cores <= total_.cores && wanted.cores <= total_.cores - in_use_.cores &&
          in_use_.bytes <= total_.bytes && wanted.bytes <= total_.bytes - in_use_.bytes;
 }

@@ -17,9 +17,10 @@ class Resources {
  public:
   explicit Resources(Amount total) : total_(total) {}
 
-  /// Returns whether a job that takes `wanted` may start now; if so, its share is taken. What is
-  /// running never takes more than there is, except for a job that takes more by itself: it is
-  /// admitted when nothing else runs, and nothing else is admitted until its release.
+  /// Returns whether a job that takes `wanted` may start now; if so, its share is taken. The
+  /// running jobs together never take more than the total. The one exception is a job that alone
+  /// takes more: it is admitted when nothing else runs, and nothing else is admitted until its
+  /// release.
   bool admit(Amount wanted);
   /// Gives back what was admitted. Throws std::logic_error if less is in use.
   void release(Amount wanted);

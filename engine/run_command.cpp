@@ -67,7 +67,7 @@ CommandResult run_command(const std::vector<std::string>& arguments, const Comma
   pipe.to.close();
   CommandResult result;
   result.exceeded = read_all(pipe.from, until, bounds.bytes, result.text);
-  // It may have closed its output and go on.
+  // The program may have closed its output and still run.
   if (result.exceeded == Bound::kNone && !is_readable(watch(process), until))
     result.exceeded = Bound::kSeconds;
   if (result.exceeded != Bound::kNone) ::kill(-process, SIGKILL);

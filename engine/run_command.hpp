@@ -22,9 +22,9 @@ struct CommandResult {
 };
 
 /// Runs a program to its end and returns what it printed. `arguments[0]` is the path of the
-/// program; PATH is not searched. Its standard input is empty. The end is when nobody holds the
-/// program's output any more and it has ended itself. What takes longer or prints more is killed
-/// with its process group, and the result says so; text up to there is kept. Throws
+/// program; PATH is not searched. Its standard input is empty. It returns when the program has
+/// ended and no process holds its output any more. A program that takes longer or prints more is
+/// killed with its process group. The result says so, and keeps the text up to there. Throws
 /// std::system_error if the program cannot be started. The function is thread-safe.
 CommandResult run_command(const std::vector<std::string>& arguments, const CommandBounds& bounds);
 

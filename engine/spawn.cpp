@@ -26,26 +26,26 @@ constexpr int kFirstUnused = kAnswersDescriptor + 1;
                           "cannot start " + program.arguments.front());
 }
 
-/// `limit` with the wish as far as the hard limit allows it.
+/// Returns the limit with the wanted value, or with its hard limit if that is lower.
 rlimit lowered(rlimit limit, rlim_t wish) {
   limit.rlim_cur = std::min(wish, limit.rlim_max);
   return limit;
 }
 
-/// RLIMIT_CPU counts whole seconds.
+/// Returns seconds for RLIMIT_CPU, which counts whole ones.
 rlim_t whole_seconds(double seconds) {
   return seconds > 0 && seconds < 1e15 ? static_cast<rlim_t>(std::ceil(seconds)) : RLIM_INFINITY;
 }
 
-/// All that happens between vfork and exec, made ready before: the child borrows this process's
-/// memory, other threads run on in it, and only async-signal-safe calls are allowed.
+/// Does all that happens between vfork and exec. It is prepared before, because the child uses the
+/// memory of this process, in which other threads go on, and may only make async-signal-safe calls.
 class Launch {
  public:
   explicit Launch(const Program& program) {
     for (const std::string& argument : program.arguments)
       arguments_.push_back(const_cast<char*>(argument.c_str()));
     arguments_.push_back(nullptr);
-    // Above the descriptors that dup2 is going to replace.
+    // The copies get numbers above the descriptors that dup2 is going to replace.
     const int sources[] = {program.input, program.output, program.output, program.answers};
     for (int target = 0; target < kFirstUnused; ++target)
       if (sources[target] >= 0) sources_[target] = moved_up(program, sources[target]);
@@ -59,14 +59,15 @@ class Launch {
       address_space_ = lowered(address_space_, program.address_space_bytes);
       address_space_.rlim_max = address_space_.rlim_cur;
     }
-    // The hard limit stays: nobody but root could raise it again for the next job.
+    // The hard limit is left alone, because only root could raise it again for the next job.
     getrlimit(RLIMIT_CPU, &cpu_time_);
     cpu_time_ = lowered(cpu_time_, whole_seconds(program.cpu_seconds));
   }
 
-  /// 0, or why the program does not run. `process` may have to be waited for even then.
+  /// Returns 0, or the errno that says why the program does not run. `process` may have to be
+  /// waited for even then.
   int run(pid_t& process) {
-    // No handler of ours may run in the child, in memory that is not the child's.
+    // No signal handler of this process may run in the child, which shares its memory.
     sigset_t all;
     sigset_t before;
     sigfillset(&all);
@@ -86,7 +87,7 @@ class Launch {
     return moved;
   }
 
-  /// exec closes the pipe without a word.
+  /// Returns 0 or the errno of a failure. A successful exec closes the pipe, and nothing is sent.
   int reported_failure() const {
     int error = 0;
     while (read(failure_.get(), &error, sizeof error) < 0 && errno == EINTR) {
@@ -97,7 +98,7 @@ class Launch {
   [[noreturn]] void become_program() {
     setpgid(0, 0);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != parent_) _exit(EXIT_FAILURE);  // it ended before it could be tied to
+    if (getppid() != parent_) _exit(EXIT_FAILURE);  // the parent ended before prctl
     for (int target = 0; target < kFirstUnused; ++target)
       if (sources_[target] && dup2(sources_[target].get(), target) < 0) give_up();
     const int first_unused = sources_[kAnswersDescriptor] ? kFirstUnused : kAnswersDescriptor;
@@ -110,7 +111,7 @@ class Launch {
     give_up();
   }
 
-  /// exec resets handlers, but what is ignored stays ignored and what is blocked stays blocked.
+  /// Resets all signals. exec resets handlers, but ignored and blocked signals would stay so.
   void reset_signals() const {
     struct sigaction action = {};
     action.sa_handler = SIG_DFL;
@@ -129,9 +130,9 @@ class Launch {
   const pid_t parent_ = getpid();
   const rlimit no_core_ = {0, 0};
   std::vector<char*> arguments_;
-  Descriptor sources_[kFirstUnused];  ///< [d] becomes descriptor d
-  Descriptor failure_;                ///< where errno of a failure arrives
-  Descriptor report_;                 ///< where it is sent
+  Descriptor sources_[kFirstUnused];  ///< Element d becomes descriptor d.
+  Descriptor failure_;                ///< The errno of a failure arrives here.
+  Descriptor report_;                 ///< The errno is sent here.
   rlimit address_space_ = {};
   rlimit cpu_time_ = {};
 };
@@ -149,7 +150,8 @@ pid_t spawn(const Program& program) {
 }
 
 Descriptor watch(pid_t process) {
-  // Not pidfd_open: its header in glibc 2.36 is not one for C++.
+  // The system call is made directly, because the header of pidfd_open in glibc 2.36 is not valid
+  // C++.
   Descriptor descriptor(static_cast<int>(syscall(SYS_pidfd_open, process, 0)));
   if (!descriptor)
     throw std::system_error(errno, std::generic_category(), "cannot watch a process");
@@ -162,7 +164,7 @@ void limit_cpu_time(pid_t process, double seconds) {
     limit = lowered(limit, whole_seconds(seconds));
     if (prlimit(process, RLIMIT_CPU, &limit, nullptr) == 0) return;
   }
-  if (errno == ESRCH) return;  // it has ended
+  if (errno == ESRCH) return;  // the process has ended
   throw std::system_error(errno, std::generic_category(), "cannot limit the CPU time of a process");
 }
 

@@ -7,8 +7,8 @@
 
 namespace semigeo::engine {
 
-/// The moving parts of one run. Counters only fall; a task is started by whoever brings its to
-/// zero.
+/// Holds the state of one run. Counters only fall. The thread that brings the counter of a task to
+/// zero starts the task.
 struct TaskGraph::Run {
   Run(std::vector<Node>& graph_nodes, const RunContext& run_context)
       : nodes(graph_nodes),
@@ -20,7 +20,7 @@ struct TaskGraph::Run {
   }
 
   void start_all(Workers::Group& group, std::vector<Task> ready) {
-    // The group prefers what it got last.
+    // The group prefers the task that it got last.
     std::stable_sort(ready.begin(), ready.end(),
                      [&](Task a, Task b) { return nodes[a].cost < nodes[b].cost; });
     for (const Task t : ready) group.run([this, &group, t] { execute(group, t); });
@@ -43,7 +43,7 @@ struct TaskGraph::Run {
       }
       context.observer.task_ended(node.name, message);
     }
-    node.work = nullptr;  // whatever it holds is free now
+    node.work = nullptr;  // frees what it holds
 
     std::vector<Task> ready;
     for (const Task t : node.before) {

@@ -132,7 +132,7 @@ Selection Dataset::selection() const {
 }
 
 void Dataset::verify() const {
-  const std::string found = content_digest(file_);  // first: it opens every array
+  const std::string found = content_digest(file_);  // it comes first, because it opens every array
   const Selection selected = selection();
   for (int k = 0; k < level_count_; ++k)
     if (level(k).features.total() != selected.feature_counts[k])

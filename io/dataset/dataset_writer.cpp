@@ -140,7 +140,7 @@ std::string DatasetWriter::finish() {
     written.verify();
     return written.digest();
   });
-  // The sidecar first: a dataset under its final name counts as done and is not looked at again.
+  // The sidecar is written first, because a dataset under its final name counts as done.
   write_file_atomically(sidecar_of(target_.final_path()),
                         xdmf_text(target_.final_path().filename().string(), steps_), Folder::kLeft);
   target_.commit();

@@ -14,7 +14,7 @@ namespace {
 using kernels::Feature;
 using kernels::kFeatureKinds;
 
-// A row begins with the bytes of a Feature, but for its padding.
+// A row begins with the bytes of a Feature without its padding.
 constexpr std::size_t kFeatureBytes = offsetof(FeatureRow, kind);
 static_assert(std::is_standard_layout_v<Feature> && std::is_standard_layout_v<FeatureRow>);
 static_assert(offsetof(Feature, vertex) == 0 && offsetof(Feature, value) == 8 &&
@@ -25,7 +25,7 @@ static_assert(offsetof(Feature, vertex) == 0 && offsetof(Feature, value) == 8 &&
 static_assert(sizeof(FeatureRow) == size_of(ElementType::kFeature) &&
               sizeof(ContourRow) == size_of(ElementType::kContour));
 
-/// A table of a level.
+/// Describes a table of a level.
 struct Table {
   const char* name;
   EncodedArray EncodedFeatures::*encoded;
@@ -51,7 +51,7 @@ std::int64_t sum(const Counts& counts) {
   return std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
 }
 
-/// The rows of one kind in a table of all, which are in the order of their kinds.
+/// Describes the rows of one kind in a table whose rows are sorted by kind.
 struct Rows {
   std::int64_t begin;
   std::int64_t end;
@@ -116,7 +116,7 @@ void check_kind(const Hdf5File& file, const std::string& path, const Row& row, s
                           " among those of kind " + std::to_string(kind));
 }
 
-// Contours as they must be: each has a point, and together they have all.
+// Checks contours: each must have a point, and together they must have all points.
 void check_contours(const Hdf5File& file, const std::string& path,
                     const std::vector<ContourRow>& contours, std::int64_t points) {
   std::int64_t next = 0;

@@ -19,7 +19,7 @@ std::string parent_of(const std::string& path) {
   return slash == std::string::npos ? "" : path.substr(0, slash);
 }
 
-// Where each step begins in an array that holds `counts` one after the other.
+// Returns where each step begins in an array that holds `counts` elements of each step.
 std::vector<std::int64_t> starts(const std::vector<std::int64_t>& counts) {
   std::vector<std::int64_t> result;
   std::int64_t sum = 0;
@@ -54,8 +54,9 @@ void add_views(VtkhdfLayout& layout, std::span<const VtkhdfStep> steps, std::siz
   layout.views["Polygons/Connectivity"] = std::move(connectivity);
 }
 
-// Triangles have their offsets at 3 i; one more than triangles, from 0 again in each part. Encoded
-// chunk by chunk: the whole would take more memory than the triangles.
+// Writes the offsets 3 i of the triangles. Each part has one more offset than triangles and begins
+// with 0 again. They are encoded chunk by chunk, because all together would take more memory than
+// the triangles.
 EncodedArray encode_offsets(const std::vector<std::int64_t>& triangles_of_part,
                             Compression compression) {
   ArrayView view{ElementType::kInt64, ElementType::kInt64};
@@ -137,7 +138,7 @@ VtkhdfLayout vtkhdf_layout(std::span<const VtkhdfStep> steps) {
     const std::vector<std::int64_t> none(parts, 0);
     tables[category + "/NumberOfCells"] = {1, none};
     tables[category + "/NumberOfConnectivityIds"] = {1, none};
-    tables[category + "/Offsets"] = {1, none};  // one more than cells, for each part
+    tables[category + "/Offsets"] = {1, none};  // each part has one more offset than cells
     tables[category + "/Connectivity"] = {1, {}};
   }
   add_views(layout, steps, parts);

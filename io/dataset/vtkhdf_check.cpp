@@ -42,12 +42,12 @@ class Check {
   Numbers numbers(const std::string& path, int columns = 1) const {
     require(file_.has("/VTKHDF/" + path), path, "VTKHDF needs it, but it is missing");
     Numbers values = read_integers(file_, "/VTKHDF/" + path, columns);
-    for (const std::int64_t value : values)  // so that no sum of them can overflow
+    for (const std::int64_t value : values)  // then no sum can overflow
       require(value >= 0 && value <= kLargest, path, "has a value that no count can have");
     return values;
   }
 
-  // The value of an attribute, which must have exactly this type.
+  // Returns the value of an attribute, which must have exactly this type.
   template <typename Value>
   Value attribute(const std::string& object, const std::string& name, const std::string& type) {
     const std::string path = "/VTKHDF" + (object.empty() ? object : "/" + object);
@@ -93,7 +93,8 @@ class Check {
                      : "must be 0, as all steps have the same connectivity");
   }
 
-  // First element of each step if the steps' elements follow one another; `sum` gets their number.
+  // Returns the first element of each step, if the elements of all steps follow one another. `sum`
+  // gets their number.
   Numbers starts(const Numbers& counts, std::int64_t& sum) const {
     Numbers result;
     sum = 0;
@@ -124,7 +125,7 @@ class Check {
     }
   }
 
-  // A virtual dataset of this shape over whole datasets that exist and have its element type.
+  // Checks a virtual dataset: it has this shape and shows whole datasets of its element type.
   void view(const std::string& path, ElementType type, int columns, std::int64_t rows) const {
     require(file_.has("/VTKHDF/" + path), path, "VTKHDF needs it, but it is missing");
     const Hdf5File::Array array = file_.open_array("/VTKHDF/" + path);
@@ -146,7 +147,7 @@ class Check {
     require(shown == rows, path, "its sources do not fill it");
   }
 
-  // Checks a table of one row per step whose column `category` must be `expected`.
+  // Checks a table that has one row for each step. Its column `category` must be `expected`.
   void step_column(const std::string& path, int category, const Numbers& expected) const {
     const Numbers table = numbers(path, kCategories);
     require(table.size() == steps_ * kCategories, path, "must have one row per step");
@@ -216,7 +217,7 @@ class Check {
 
   const Hdf5File& file_;
   std::size_t steps_ = 0;
-  Numbers vertices_;  // of each part
+  Numbers vertices_;  // number of vertices of each part
   bool changes_ = false;
 };
 

@@ -31,7 +31,7 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-// The shortest text that reads back as the same number, in any locale.
+// Returns the shortest text that reads back as the same number, in any locale.
 std::string number(double value) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};

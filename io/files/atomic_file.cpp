@@ -31,7 +31,7 @@ std::filesystem::path folder_of(const std::filesystem::path& path) {
               error == ENOSPC ? "free some space and run again" : "check the folder and its disk");
 }
 
-// A name that the file system takes, however long the final one is.
+// Returns a name that is not too long for the file system, however long the final one is.
 std::string temporary_name(std::string name) {
   std::string suffix = ".";
   suffix.append(host_name()).append(".").append(std::to_string(getpid())).append(kSuffix);
@@ -52,7 +52,7 @@ void sync_path(const std::filesystem::path& path, const std::filesystem::path& s
     fail(shown_as, "cannot force it to the disk", errno);
 }
 
-// The process that ".<name>.<host>.<pid>.partial" belongs to, or 0 if it is not of this host.
+// Returns the process that wrote ".<name>.<host>.<pid>.partial", or 0 if it ran on another host.
 pid_t owner_of(std::string_view name, std::string_view host) {
   if (!name.starts_with('.') || !name.ends_with(kSuffix)) return 0;
   name.remove_suffix(kSuffix.size());
@@ -67,7 +67,7 @@ pid_t owner_of(std::string_view name, std::string_view host) {
   return ours ? pid : 0;
 }
 
-/// Whether a process has ended, even if its parent has not asked about it yet.
+/// Returns whether a process has ended, even if its parent has not waited for it yet.
 bool is_dead(pid_t process) {
   if (::kill(process, 0) != 0 && errno == ESRCH) return true;
   std::ifstream stat("/proc/" + std::to_string(process) + "/stat");
@@ -89,7 +89,7 @@ std::string host_name() {
 AtomicFile::AtomicFile(std::filesystem::path final_path)
     : final_path_(std::move(final_path)),
       temporary_path_(folder_of(final_path_) / temporary_name(final_path_.filename().string())) {
-  // The name holds our process id: whoever left it has died since.
+  // The name holds the id of this process, so the process that left the file has ended.
   std::error_code ignored;
   std::filesystem::remove(temporary_path_, ignored);
 }

@@ -61,7 +61,7 @@ std::optional<std::int64_t> ByteSource::bytes_left() const {
 }
 
 std::int64_t ByteSource::drain() {
-  constexpr std::string_view kEmpty("\0 \t\r\n\x1a", 6);  // 1a: the end of a text under DOS
+  constexpr std::string_view kEmpty("\0 \t\r\n\x1a", 6);  // DOS ends texts with 1a
   std::int64_t found = 0;
   for (; fill(1); cursor_ = end_)
     found += std::count_if(cursor_, end_, [&](char c) { return kEmpty.find(c) == kEmpty.npos; });

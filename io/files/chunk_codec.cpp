@@ -21,7 +21,7 @@ constexpr std::int64_t kChunkBytes = 256 * 1024;
 constexpr int kFastest = 1;
 constexpr std::size_t kChecksumBytes = 4;
 
-// Positions in the pipeline of Compression::kDeflate, as bits of the filter mask.
+// The filters of Compression::kDeflate as bits of the filter mask.
 constexpr std::uint32_t kSkipShuffle = 1U << 0;
 constexpr std::uint32_t kSkipDeflate = 1U << 1;
 
@@ -82,7 +82,7 @@ void gather_rows(const ArrayView& view, std::int64_t first, std::int64_t count, 
   }
 }
 
-// Calls `action` with the size of an element, as a constant where that makes the loops fast.
+// Calls `action` with the size of an element. Common sizes are constants, which makes loops fast.
 template <typename Action>
 void with_known_size(std::size_t size, const Action& action) {
   switch (size) {
@@ -126,9 +126,9 @@ std::vector<std::byte> with_checksum(std::span<const std::byte> bytes) {
 
 using Compressor = std::unique_ptr<libdeflate_compressor, FreeCompressor>;
 
-// The low bytes of coordinates, and of the vertices of triangles, are noise, and shuffling puts them
-// in front, one plane after the other. Returns how many bytes of such planes there are, by packing a
-// sample, which must become shorter by a thirty-second part.
+// Returns how many bytes at the front of shuffled rows are noise. The low bytes of coordinates, and of
+// the vertices of triangles, are noise, and shuffling puts them in front, one plane after the other.
+// A sample is packed to find out. It must become shorter by a thirty-second part.
 std::size_t noise_in_front(libdeflate_compressor* compressor, std::span<const std::byte> shuffled,
                            std::size_t element_size) {
   constexpr std::size_t kSample = 4096;
@@ -143,7 +143,7 @@ std::size_t noise_in_front(libdeflate_compressor* compressor, std::span<const st
   return noise;
 }
 
-// Stored blocks of a deflate stream (RFC 1951, 3.2.4), none of them the last.
+// Writes stored blocks of a deflate stream (RFC 1951, 3.2.4). None of them is the last block.
 std::byte* put_stored_blocks(std::span<const std::byte> bytes, std::byte* out) {
   while (!bytes.empty()) {
     const auto length = static_cast<std::uint16_t>(std::min<std::size_t>(bytes.size(), 0xffff));
@@ -158,9 +158,10 @@ std::byte* put_stored_blocks(std::span<const std::byte> bytes, std::byte* out) {
   return out;
 }
 
-// A zlib stream (RFC 1950) of `bytes` in `out`, the first `noise` of them stored as they are: the
-// compressor would spend most of its time finding nothing in them. Returns its length, or 0 if it
-// is not shorter than the input; `out` must have room for as many bytes as the input.
+// Writes `bytes` as a zlib stream (RFC 1950) to `out`, which must have room for as many bytes as
+// the input. The first `noise` bytes are stored as they are, because the compressor would spend
+// most of its time on them in vain. Returns the length of the stream, or 0 if it is not shorter
+// than the input.
 std::size_t zlib_stream(libdeflate_compressor* compressor, std::span<const std::byte> bytes,
                         std::size_t noise, std::byte* out) {
   constexpr std::size_t kHeader = 2;
@@ -198,9 +199,9 @@ std::uint64_t xxh3_64(std::span<const std::byte> bytes) {
 }
 
 std::uint32_t fletcher32(std::span<const std::byte> bytes) {
-  // Big-endian 16-bit words modulo 65535, reduced seldom enough for 64-bit sums to be cheap and
-  // often enough for them not to overflow. A reduced sum is 0 only if every byte was: HDF5's
-  // choice between the two representations of zero.
+  // Big-endian 16-bit words are summed modulo 65535. Sums are reduced seldom, which is cheap, but
+  // before 64 bits overflow. A reduced sum is 0 only if every byte is 0; HDF5 chooses so between
+  // the two representations of zero.
   constexpr std::size_t kBlock = 1 << 16;
   const auto fold = [](std::uint64_t x) { return (x & 0xffff) + (x >> 16); };
   const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
@@ -263,7 +264,8 @@ EncodedChunk encode_rows(const ArrayShape& shape, std::span<const std::byte> row
     chunk.bytes = with_checksum(rows);
     return chunk;
   }
-  // One allocation for the shuffled bytes and the compressed ones, which are useful only if fewer.
+  // One allocation holds the shuffled and the compressed bytes. The latter are used only if they
+  // are fewer.
   const auto scratch = std::make_unique_for_overwrite<std::byte[]>(2 * size);
   const auto element_size = static_cast<std::size_t>(size_of(shape.type));
   shuffle(rows, element_size, scratch.get());

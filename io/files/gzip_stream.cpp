@@ -37,7 +37,7 @@ bool GzipStream::refill() {
 
 bool GzipStream::start_member() {
   if (!first_member_) {
-    // Zeros after a member are padding (tapes, block devices); anything else must be a member.
+    // Zeros after a member are the padding of tapes and block devices. All else must be a member.
     for (;; ++stream_.next_in, --stream_.avail_in) {
       if (stream_.avail_in == 0 && !refill()) return false;
       if (*stream_.next_in != 0) break;

@@ -29,7 +29,8 @@ Error open_error(const std::filesystem::path& path, int code) {
 }  // namespace
 
 InputFile::InputFile(std::filesystem::path path) : path_(std::move(path)) {
-  // O_NONBLOCK: opening a pipe must not wait for a writer; it has no effect on regular files.
+  // With O_NONBLOCK the opening of a pipe does not wait for a writer. Regular files are not
+  // affected.
   descriptor_ = engine::open_file(path_, O_RDONLY | O_NONBLOCK);
   if (!descriptor_) throw open_error(path_, errno);
   struct stat status {};

@@ -31,7 +31,7 @@ void OutputFile::commit_unsynced() {
 
 void OutputFile::close() {
   flush();
-  // Only the closing reports the last of the failures.
+  // Some failures are reported only when the file is closed.
   if (std::fclose(stream_.release()) != 0) fail("cannot be written");
 }
 

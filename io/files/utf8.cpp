@@ -6,7 +6,8 @@
 namespace semigeo::io {
 namespace {
 
-/// Characters of `bytes` bytes: the lead's fixed bits, and the least code point that needs so many.
+/// Describes characters of `bytes` bytes: the fixed bits of their first byte, and the least code
+/// point that needs this number of bytes.
 struct Form {
   std::size_t bytes;
   unsigned mask;

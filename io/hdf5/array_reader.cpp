@@ -9,7 +9,7 @@ namespace semigeo::io {
 namespace {
 
 constexpr std::int64_t kBytesAtOnce = 8 << 20;
-constexpr std::int64_t kBestDeflateRatio = 1032;  // of any deflate stream
+constexpr std::int64_t kBestDeflateRatio = 1032;  // no deflate stream has a higher ratio
 
 Hdf5File::Array open_checked(const Hdf5File& file, const std::string& path, int columns) {
   Hdf5File::Array array = file.open_array(path);
@@ -31,7 +31,7 @@ void require_type(const Hdf5File::Array& array, ElementType type) {
                                           std::string(name_of(type)));
 }
 
-/// The rows of a chunk without padding, in a buffer of the size of a chunk.
+/// Returns the rows of a chunk without padding, in a buffer of the size of a chunk.
 std::span<const std::byte> decoded(const Hdf5File::Array& array, std::int64_t index,
                                    const EncodedChunk& chunk, std::byte* buffer) {
   const ArrayShape& shape = array.shape();
@@ -95,7 +95,7 @@ void for_each_chunk(const Hdf5File::Array& array, const ForEach& for_each,
   const std::int64_t at_once = std::max<std::int64_t>(kBytesAtOnce / shape.chunk_bytes(), 1);
   for (std::int64_t first = 0; first < shape.chunk_count(); first += at_once) {
     const std::int64_t count = std::min(at_once, shape.chunk_count() - first);
-    std::vector<EncodedChunk> chunks;  // HDF5 is for one thread at a time
+    std::vector<EncodedChunk> chunks;  // only one thread at a time may use HDF5
     for (std::int64_t i = 0; i < count; ++i) chunks.push_back(array.read_chunk(first + i));
     for_each(count, [&](std::int64_t i) {
       const auto buffer = std::make_unique_for_overwrite<std::byte[]>(shape.chunk_bytes());

@@ -56,7 +56,7 @@ std::string complete_file(DigestedFile& digested, AtomicFile& target,
   file.flush();
   file.write_attribute("/", "complete", std::int64_t{1});
   file.close();
-  // If there is no room for another thread, get() syncs.
+  // If no thread can be started, get() itself syncs the file.
   std::future<void> synced =
       std::async(std::launch::async | std::launch::deferred, [&] { target.sync(); });
   try {

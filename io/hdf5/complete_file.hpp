@@ -31,8 +31,9 @@ nlohmann::json read_json_attribute(const Hdf5File& file, const std::string& name
 
 /// Ends a file that is written under the temporary name of `target`: writes the digest and
 /// `complete`. Then `verify` reads it from the path that it is given, while another thread forces
-/// the file to the disk, and returns the digest that it found stored. What it throws becomes an
-/// Error that names the final file. Returns the digest; `target` is left to be committed.
+/// the file to the disk, and returns the digest that it found stored. An exception of `verify`
+/// becomes an Error that names the final file. Returns the digest; `target` is left to be
+/// committed.
 std::string complete_file(DigestedFile& file, AtomicFile& target,
                           const std::function<std::string(const std::filesystem::path&)>& verify);
 

@@ -40,7 +40,7 @@ std::string described(std::string_view kind, const std::string& path, ElementTyp
   return line + " ";
 }
 
-// Walks a file and enters what it reads.
+// Reads all objects of a file and enters them in a digest.
 class Walk {
  public:
   Walk(const Hdf5File& file, const SeenRows& seen, const ForEach& for_each)

@@ -17,7 +17,7 @@ constexpr const char* kDamaged =
 
 constexpr unsigned kMostInHeader = 48;
 
-/// What HDF5 says of an error; nothing if there was no memory to keep it in.
+/// Holds HDF5's description of an error. It is empty if there was no memory for it.
 using Reason = std::optional<std::string>;
 
 herr_t keep_first(unsigned, const H5E_error2_t* error, void* reason) noexcept {
@@ -26,21 +26,21 @@ herr_t keep_first(unsigned, const H5E_error2_t* error, void* reason) noexcept {
   } catch (const std::bad_alloc&) {
     static_cast<Reason*>(reason)->reset();
   }
-  return 1;  // stop: the walk began at the innermost entry
+  return 1;  // stops the walk, which began at the innermost entry
 }
 
 Hdf5Handle file_access() {
   Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_V110);
   H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
-  // Files are renamed when whole and never changed in place, so that locks protect nothing, and
-  // network file systems without locks would refuse to open them.
+  // Files get their names when they are whole and are never changed in place, so locks would
+  // protect nothing. With locks, files could not be opened on network file systems that have none.
   H5Pset_file_locking(access.get(), false, true);
   return access;
 }
 
-// No times, and up to kMostInHeader entries or attributes in the group's header: beyond, each group
-// gets a heap and an index of some kB for them.
+// Groups store no times. Up to kMostInHeader entries or attributes lie in the group's header; with
+// more, a group gets a heap and an index of some kB.
 void prepare_group(hid_t properties) {
   H5Pset_obj_track_times(properties, false);
   H5Pset_link_phase_change(properties, kMostInHeader, kMostInHeader / 2);
@@ -59,8 +59,9 @@ herr_t collect_link(hid_t, const char* name, const H5L_info_t* info, void* data)
 
 }  // namespace
 
-// Once per process: at exit HDF5 would flush what a full disk left it with, and crash.
-// Once per thread: HDF5 would print its error stack, and keeps that setting per thread.
+// Once for each process, HDF5's exit handler is turned off. It would flush what a full disk has
+// left unwritten, and crash. Once for each thread, the printing of HDF5's error stack is turned
+// off.
 void prepare_library() {
   static const int no_exit_handler = H5dont_atexit();
   thread_local const int quiet = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
@@ -68,11 +69,12 @@ void prepare_library() {
   static_cast<void>(quiet);
 }
 
-// HDF5's innermost reason; of its report on a system call only the system's own words.
+// Returns HDF5's innermost reason. From a report about a system call it takes only the words of the
+// system.
 std::string innermost_reason() {
   Reason reason = "";
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &reason);
-  if (!reason) throw std::bad_alloc();  // a C library must not be thrown through
+  if (!reason) throw std::bad_alloc();  // no exception may pass through a C library
   std::string text = std::move(*reason);
   constexpr std::string_view kMark = "error message = '";
   const std::size_t mark = text.find(kMark);

@@ -10,7 +10,7 @@
 namespace semigeo::io {
 namespace {
 
-constexpr std::int64_t kLargestChunk = 16 * 1024 * 1024;  // ours have 256 KiB
+constexpr std::int64_t kLargestChunk = 16 * 1024 * 1024;  // semigeo writes chunks of 256 KiB
 constexpr unsigned kHighestDeflateLevel = 9;
 
 hid_t number_type(ElementType type) {
@@ -33,7 +33,7 @@ hid_t number_type(ElementType type) {
   return H5I_INVALID_HID;
 }
 
-// Packed, in the order of the members.
+// Returns the HDF5 type of a record: packed, with the members in their order.
 Hdf5Handle record_type(std::span<const RecordMember> members, std::int64_t size) {
   Hdf5Handle record(H5Tcreate(H5T_COMPOUND, static_cast<std::size_t>(size)), H5Tclose);
   std::size_t offset = 0;
@@ -48,7 +48,7 @@ Hdf5Handle record_type(std::span<const RecordMember> members, std::int64_t size)
   return record;
 }
 
-// No volatile bytes: neither times nor whatever the fill value would be.
+// Arrays have no volatile bytes: they store no times and no fill values.
 Hdf5Handle array_properties() {
   Hdf5Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(properties.get(), false);
@@ -56,8 +56,9 @@ Hdf5Handle array_properties() {
   return properties;
 }
 
-// The filters that Compression stands for, in order; nothing if they are others. Our decoder needs
-// no parameters of theirs, but other readers do: shuffle's must be the size of an element.
+// Returns the Compression that the filters of an array stand for, or nothing if they are others.
+// The decoder here needs no parameters of filters, but other readers do, so the parameter of
+// shuffle must be the size of an element.
 std::optional<Compression> compression_of(hid_t properties, ElementType type) {
   std::vector<H5Z_filter_t> filters;
   for (int i = 0; i < H5Pget_nfilters(properties); ++i) {

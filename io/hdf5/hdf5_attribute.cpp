@@ -8,7 +8,8 @@
 namespace semigeo::io {
 namespace {
 
-constexpr std::int64_t kLargestAttribute = 60 * 1024;  // an object header's message: under 64 KiB
+constexpr std::int64_t kLargestAttribute =
+    60 * 1024;  // a message in an object header has less than 64 KiB
 
 bool is_ascii(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x80; });
@@ -30,7 +31,7 @@ struct AttributeShape {
   enum class Kind { kInteger, kReal, kText, kUnsupported };
   Kind kind = Kind::kUnsupported;
   bool scalar = true;
-  std::int64_t count = 1;  // elements, or bytes of the text
+  std::int64_t count = 1;  // number of elements, or of bytes of the text
   bool ascii = true;
 };
 
@@ -53,7 +54,7 @@ AttributeShape attribute_shape(hid_t attribute) {
   return shape;
 }
 
-/// As io::attribute_type has it, or "unsupported".
+/// Returns the type as io::attribute_type names it, or "unsupported".
 std::string text_of(const AttributeShape& shape) {
   const auto count = static_cast<std::size_t>(shape.count);
   switch (shape.kind) {

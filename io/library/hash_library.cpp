@@ -24,7 +24,7 @@ std::string counted(std::int64_t index, std::int64_t count) {
   return std::to_string(index) + " of " + std::to_string(count);
 }
 
-/// Texts that each end with NUL, one for each model.
+/// Reads texts that end with NUL, one for each model.
 std::vector<std::string> read_texts(const Hdf5File& file, const char* path, std::size_t count) {
   std::vector<std::string> texts;
   std::string text;
@@ -41,7 +41,8 @@ std::vector<std::string> read_texts(const Hdf5File& file, const char* path, std:
   return texts;
 }
 
-/// (models + 1), from 0, ascending, `most` rows a model at most, up to all rows of `array`.
+/// Reads offsets (models + 1). They must ascend from 0 to the number of rows of `array`, with at
+/// most `most` rows for each model.
 std::vector<std::int64_t> read_offsets(const Hdf5File& file, const std::string& path,
                                        std::size_t models, std::int64_t rows, std::int64_t most) {
   std::vector<std::int64_t> offsets = read_integers(file, path, 1);
@@ -93,7 +94,7 @@ struct HashLibrary::State {
   PackedModel read_model(std::size_t model) const;
 
   Hdf5File file;
-  mutable std::mutex mutex;  // of the file; what it gave is checked and unpacked without
+  mutable std::mutex mutex;  // guards the file; rows are checked and unpacked without it
   nlohmann::json parameters;
   std::string digest;
   Hdf5File::Array postings;
@@ -106,7 +107,7 @@ struct HashLibrary::State {
   std::vector<float> centres;
   std::vector<double> origins;
   std::vector<float> spacings;
-  std::vector<std::uint32_t> feature_counts;  ///< ModelInfo::features, close together
+  std::vector<std::uint32_t> feature_counts;  ///< ModelInfo::features of all models.
   std::vector<std::int64_t> feature_offsets;
   std::vector<std::int64_t> level_offsets;
   std::vector<std::int64_t> sample_offsets;
@@ -214,7 +215,7 @@ std::vector<std::byte> HashLibrary::State::read_chunk(const Hdf5File::Array& arr
   return rows;
 }
 
-// Of one model.
+// Reads the rows of one model.
 std::vector<std::byte> HashLibrary::State::read_rows(const Hdf5File::Array& array,
                                                      const std::vector<std::int64_t>& offsets,
                                                      std::size_t model) const {
@@ -247,7 +248,7 @@ PackedModel HashLibrary::State::read_model(std::size_t model) const {
           .sample_normals = read_rows(sample_normals, sample_offsets, model)};
 }
 
-// Some rows of all models' features, of which `first` is the first.
+// Checks some rows of the features of all models. `first` is the number of the first row.
 void HashLibrary::State::check_features(std::span<const std::byte> records,
                                         std::int64_t first) const {
   auto model = static_cast<std::size_t>(std::ranges::upper_bound(feature_offsets, first) -
@@ -320,7 +321,8 @@ kernels::RecognitionModel HashLibrary::read_model(std::int64_t model) const {
 
 namespace {
 
-/// Order and counts of all postings, as blocks of them go by on any threads, in any order.
+/// Checks the order and the counts of all postings. It receives their blocks from any threads and
+/// in any order.
 class PostingCheck {
  public:
   PostingCheck(const Hdf5File& file, std::span<const std::uint64_t> cells, std::size_t models,
@@ -331,7 +333,7 @@ class PostingCheck {
         ends_(static_cast<std::size_t>((cells.back() + block_size_ - 1) / block_size_)),
         counts_(models) {}
 
-  /// The postings from `index` on.
+  /// Takes the postings from `index` on.
   void add(std::uint64_t index, std::span<const Posting> postings) {
     ends_[index / block_size_] = {postings.front(), postings.back()};
     std::uint64_t cell_end = 0;
@@ -343,7 +345,7 @@ class PostingCheck {
     }
   }
 
-  /// Once all have gone by: what lies between the blocks.
+  /// Checks the order from block to block, after all blocks were taken.
   void finish() const {
     for (std::size_t block = 1; block < ends_.size(); ++block)
       if (!std::ranges::binary_search(cells_, block * block_size_) &&
@@ -358,7 +360,7 @@ class PostingCheck {
     Posting last;
   };
 
-  // A triangle is in a cell once.
+  // A cell has each triangle at most once.
   static bool in_order(const Posting& a, const Posting& b) {
     return a.model < b.model || (a.model == b.model && a.corners < b.corners);
   }
@@ -371,7 +373,7 @@ class PostingCheck {
   const Hdf5File& file_;
   std::span<const std::uint64_t> cells_;
   std::uint64_t block_size_;
-  std::vector<Ends> ends_;  ///< of each block
+  std::vector<Ends> ends_;  ///< First and last posting of each block.
   std::vector<std::atomic<std::int64_t>> counts_;
 };
 

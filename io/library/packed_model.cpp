@@ -15,7 +15,7 @@ namespace {
 
 using kernels::OrientedFeature;
 
-// A record is what the struct is in memory, without the padding at its end.
+// A record is the struct as it is in memory, without the padding at its end.
 static_assert(kOrientedFeatureBytes == size_of(ElementType::kOrientedFeature) &&
               offsetof(OrientedFeature, code) == 36 &&
               offsetof(OrientedFeature, level) + 1 == kOrientedFeatureBytes);
@@ -89,7 +89,8 @@ std::optional<std::string> problem_of_features(std::span<const std::byte> record
 }
 
 std::optional<std::string> problem_of_floats(std::span<const std::byte> floats) {
-  // All bits of the exponent are set in what is not finite; a loop without a branch is a fast one.
+  // A number is not finite if all bits of its exponent are set. The loop has no branch, so it is
+  // fast.
   constexpr std::uint32_t kExponent = 0x7f800000;
   std::uint32_t found = 0;
   for (std::size_t at = 0; at + sizeof(float) <= floats.size(); at += sizeof(float)) {

@@ -6,7 +6,7 @@
 namespace semigeo::io {
 namespace {
 
-constexpr double kHalf = 32767;  // 0 is a number of the scale: 32767
+constexpr double kHalf = 32767;  // 0 is stored exactly, as 32767
 
 std::uint16_t to_bits(double value) {
   return static_cast<std::uint16_t>(std::lround(std::clamp(value, -1.0, 1.0) * kHalf) + 32767);
@@ -16,7 +16,7 @@ double from_bits(std::uint16_t bits) {
   return (std::min<int>(bits, 65534) - 32767) / kHalf;
 }
 
-// Of one coordinate: between the lower half and its fold.
+// Returns a coordinate of a point of the lower half after it was folded outwards, or back.
 double folded(double along, double across) {
   return (1 - std::abs(across)) * (along >= 0 ? 1 : -1);
 }

@@ -24,8 +24,8 @@ struct PartitionHeader {
 std::uint64_t runs_hash(std::span<const std::uint64_t> content_hashes);
 
 /// Writes the postings of a range of shapes (docs/formats/library.md), piece by piece. The file
-/// appears under its name when it is whole, unless the power is cut meanwhile: what is removed as
-/// soon as the library is made is not forced to the disk. It keeps two blocks in memory.
+/// appears under its name when it is whole. It is not forced to the disk, because it is removed as
+/// soon as the library is made; so a power cut may damage it. It keeps two blocks in memory.
 class PostingPartitionWriter {
  public:
   PostingPartitionWriter(const std::filesystem::path& path, PartitionHeader header);

@@ -16,7 +16,7 @@ using kernels::Triplet;
 constexpr BinaryFormat kRunFormat = {
     .magic = "semigeoT", .version = 1, .noun = "a run of triplets"};
 
-/// A triplet as it is stored, within its shape.
+/// Holds a triplet as it is stored, without its shape.
 struct Row {
   std::uint16_t codes;  ///< cell % kCodeTriples
   kernels::Invariants invariants;
@@ -27,7 +27,7 @@ static_assert(sizeof(Row) == 24);
 constexpr const char* kNoFeature = "refers to a feature that does not exist";
 constexpr const char* kNotBehind = "is not behind the one before it";
 
-/// What is wrong with a triplet that comes after `last`, if anything.
+/// Returns what is wrong with a triplet that comes after `last`, or nothing.
 const char* problem_of(const Triplet& triplet, const Triplet* last, std::int64_t features) {
   if (triplet.cell >= kernels::kTripletCells) return "is in a cell that does not exist";
   for (const std::uint16_t corner : triplet.corners)

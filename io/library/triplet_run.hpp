@@ -14,10 +14,11 @@
 
 namespace semigeo::io {
 
-/// Writes a model and its triplets as one file (docs/formats/library.md), whole or not at all,
-/// unless the power is cut meanwhile: it is not forced to the disk, as there are thousands. Equal
-/// content gives equal bytes. Throws std::invalid_argument if the model is unsound or the triplets
-/// are not sorted by cell, then corners, none twice, or refer to features that it does not have.
+/// Writes a model and its triplets as one file (docs/formats/library.md), whole or not at all. It
+/// is not forced to the disk, because there are thousands of such files; so a power cut may damage
+/// it. Equal content gives equal bytes. Throws std::invalid_argument if the model is unsound or the
+/// triplets are not sorted by cell, then corners, none twice, or refer to features that it does not
+/// have.
 void write_triplet_run(const std::filesystem::path& path, const std::string& job_key,
                        const kernels::RecognitionModel& model,
                        std::span<const kernels::Triplet> triplets);

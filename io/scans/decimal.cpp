@@ -9,7 +9,7 @@ namespace semigeo::io {
 namespace {
 
 constexpr std::uint64_t kExactMantissa = std::uint64_t{1} << 53;
-constexpr std::ptrdiff_t kMaxDigits = 19;  // as many always fit 64 bits
+constexpr std::ptrdiff_t kMaxDigits = 19;  // numbers of this many digits fit into 64 bits
 constexpr int kMaxExactPower = 22;
 constexpr double kPowersOfTen[kMaxExactPower + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                                      1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
@@ -19,8 +19,8 @@ bool is_digit(char c) {
   return static_cast<unsigned char>(c - '0') < 10;
 }
 
-/// The exponent after `p`, which may be negative and is cut at +-99,999; moves `p` behind it, or
-/// not at all if there is none.
+/// Reads the exponent at `p`, limits it to +-99,999 and moves `p` behind it. If there is no
+/// exponent, it returns 0 and leaves `p` where it is.
 int parse_exponent(const char*& p, const char* last) {
   const char* q = p;
   if (q == last || (*q != 'e' && *q != 'E')) return 0;
@@ -34,7 +34,8 @@ int parse_exponent(const char*& p, const char* last) {
   return negative ? -exponent : exponent;
 }
 
-/// Whether a nonzero number is below 1; only asked of numbers that no double comes near.
+/// Returns whether a nonzero number is below 1. It is called only for numbers that are too large or
+/// too small for a double.
 bool is_tiny(const char* first, const char* last) {
   const char* p = std::find_if(first, last, [](char c) { return c != '0'; });
   std::ptrdiff_t magnitude = 0;
@@ -50,7 +51,7 @@ bool is_tiny(const char* first, const char* last) {
   return magnitude + parse_exponent(p, last) < 0;
 }
 
-/// Everything that the exact short path does not cover.
+/// Reads all numbers for which the short exact way does not work.
 Decimal parse_general(const char* start, const char* first, const char* last, bool negative) {
   double value = 0;
   const auto [end, status] = std::from_chars(first, last, value);
@@ -71,7 +72,7 @@ Decimal parse_decimal(std::string_view text) {
   const char* const first = p;
 
   // A mantissa below 2^53 and a power of ten up to 10^22 are exact, so one operation on them
-  // rounds correctly. Wrapped mantissas are found by their number of digits.
+  // rounds correctly. A mantissa that has wrapped is recognised by its number of digits.
   std::uint64_t mantissa = 0;
   for (; p < last && is_digit(*p); ++p) mantissa = mantissa * 10 + static_cast<unsigned>(*p - '0');
   std::ptrdiff_t digits = p - first;

@@ -16,10 +16,10 @@ using kernels::FeatureKind;
 using kernels::SampledContours;
 using Origin = std::array<double, 3>;
 
-/// A column of a CSV, a property of a PLY's vertices.
+/// Describes a column of a CSV, which is a property of vertices in a PLY.
 struct Column {
   const char* name;
-  const char* ply_type;  // nullptr: that of coordinates
+  const char* ply_type;  // nullptr stands for the type of coordinates
 };
 constexpr std::array<Column, 15> kFeatureColumns = {{
     {"x", nullptr},
@@ -47,7 +47,7 @@ constexpr std::array<Column, 6> kContourColumns = {{
     {"closed", "uchar"},
 }};
 
-/// Rows as binary PLY has them: number after number.
+/// Writes rows as binary PLY has them: number after number.
 class PlyRows {
  public:
   PlyRows(OutputFile& output, std::span<const Column> columns, const Placement& placement,
@@ -79,7 +79,7 @@ class PlyRows {
   OutputFile& output_;
 };
 
-/// Rows as lines, with the names of the columns in the first.
+/// Writes rows as lines. The first line has the names of the columns.
 class CsvRows {
  public:
   CsvRows(OutputFile& output, std::span<const Column> columns) : output_(output) {
@@ -144,7 +144,7 @@ void put_contours(Rows& rows, const SampledContours& contours, const Placement& 
     }
 }
 
-/// Calls use(from, to) for every edge. Two points have one, closed or not.
+/// Calls use(from, to) for every edge. Two points have one edge, whether closed or not.
 template <typename Use>
 void for_each_edge(const SampledContours& contours, const Use& use) {
   for (std::int64_t c = 0; c < contours.count(); ++c) {

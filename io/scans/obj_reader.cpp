@@ -58,8 +58,8 @@ class ObjBody {
     builder_.add_face(corners_, place);
   }
 
-  /// v, v/vt, v//vn or v/vt/vn, of which only v counts; zero-based. Negative numbers count back
-  /// from the last vertex above the line.
+  /// Reads a corner: v, v/vt, v//vn or v/vt/vn, of which only v is used. Returns v, counted from 0.
+  /// Negative numbers count back from the last vertex above the line.
   std::int64_t read_corner() {
     const std::string_view word = scanner_.word();
     const char* const end = word.data() + word.size();

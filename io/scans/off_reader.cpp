@@ -14,9 +14,9 @@ namespace {
 constexpr const char* kMendLine = "correct the line or export the scan again";
 
 struct OffHeader {
-  std::string keyword = "OFF";  ///< with the prefixes that add to its vertices: "STCNOFF"
+  std::string keyword = "OFF";  ///< Its prefixes add data to vertices: "STCNOFF".
   bool binary = false;
-  std::int64_t vertex_bytes = 12;  ///< of a binary vertex: its position and what the prefixes add
+  std::int64_t vertex_bytes = 12;  ///< Bytes of a binary vertex, with the data of prefixes.
 };
 
 /// Reads the keyword, which may be absent.
@@ -73,14 +73,14 @@ class OffText {
       const double y = scanner_.number("the y coordinate");
       const double z = scanner_.number("the z coordinate");
       builder_.add_point(x, y, z, place());
-      scanner_.next_line();  // over normals and colours, which some files have unannounced
+      scanner_.next_line();  // passes over normals and colours, which some files do not announce
     }
     for (std::int64_t i = 0; i < counts.faces; ++i) {
       begin_line("faces", counts.faces, i);
       read_face();
-      scanner_.next_line();  // over the colour
+      scanner_.next_line();  // passes over the colour
     }
-    scanner_.skip_to_content();  // comments at the end
+    scanner_.skip_to_content();  // passes over comments at the end
   }
 
  private:
@@ -94,7 +94,7 @@ class OffText {
       scanner_.fail("the header has a negative count", kMendLine);
     builder_.promise_points(counts.vertices, 5, place());  // "0 0 0"
     builder_.promise_faces(counts.faces, 1, place());      // "0"
-    scanner_.next_line();  // over the number of edges, which nobody needs
+    scanner_.next_line();                                  // passes over the number of edges
     return counts;
   }
 
@@ -117,8 +117,8 @@ class OffText {
   std::vector<std::int64_t> corners_;
 };
 
-/// Big-endian 32-bit numbers: the three counts, the vertices, then for each face its corners and
-/// the components of its colour, each list preceded by its length.
+/// Reads binary OFF. It has big-endian 32-bit numbers: the three counts, the vertices, and then for
+/// each face its corners and the components of its colour, each list after its length.
 class OffBinary {
  public:
   OffBinary(ByteSource& source, ScanBuilder& builder) : source_(source), builder_(builder) {}
@@ -191,7 +191,7 @@ class OffBinary {
   }
 
   [[noreturn]] void fail_end() {
-    source_.skip(ByteSource::kWindowBytes);  // to the end: the rest of a number
+    source_.skip(ByteSource::kWindowBytes);  // passes over the rest of a number, to the end
     builder_.fail_promise(what_, promised_, index_, place());
   }
 

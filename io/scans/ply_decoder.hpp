@@ -128,7 +128,7 @@ class PlyBinaryDecoder {
     return 0;
   }
   [[noreturn]] void fail_end() {
-    source_.skip(ByteSource::kWindowBytes);  // to the end: the rest of a number
+    source_.skip(ByteSource::kWindowBytes);  // passes over the rest of a number, to the end
     builder_.fail_promise(plural(*element_), element_->count, index_,
                           {Place::Unit::kByte, source_.position()});
   }

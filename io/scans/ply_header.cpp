@@ -79,7 +79,7 @@ PlyProperty read_property(TextScanner& scanner) {
   return property;
 }
 
-/// Reads one line; false when it was the last.
+/// Reads one line. Returns false if it was the last one.
 bool read_line(TextScanner& scanner, PlyHeader& header, bool& encoding_known) {
   const std::string keyword(scanner.word());
   if (keyword == "end_header") return false;
@@ -133,7 +133,7 @@ bool PlyElement::has_lists() const {
 
 PlyHeader read_ply_header(ByteSource& source) {
   TextScanner scanner(source);
-  // Not with peek: in a binary file of another kind the first word may be of any length.
+  // `peek` is not used, because the first word of another binary file may have any length.
   const std::string_view start = source.ahead();
   if (start.substr(0, 3) != "ply" && start.substr(0, 6) != "\xef\xbb\xbfply")
     scanner.fail("this is not a PLY file: it does not begin with 'ply'", "correct its extension");

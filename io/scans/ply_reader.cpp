@@ -18,7 +18,7 @@ Place declaration(const PlyElement& element) {
   return {Place::Unit::kLine, element.line};
 }
 
-/// For each property of `vertex` the axis it is the coordinate of, or -1.
+/// Returns, for each property of `vertex`, the axis whose coordinate it is, or -1.
 std::vector<int> find_axes(const PlyElement& vertex, const ScanBuilder& builder) {
   std::vector<int> axes(vertex.properties.size(), -1);
   constexpr std::array<std::string_view, 3> kNames = {"x", "y", "z"};
@@ -34,7 +34,7 @@ std::vector<int> find_axes(const PlyElement& vertex, const ScanBuilder& builder)
   return axes;
 }
 
-/// The list of `element` that holds its vertex indices.
+/// Returns the list of `element` that holds its vertex indices.
 const PlyProperty& find_index_list(const PlyElement& element, const ScanBuilder& builder) {
   for (const PlyProperty& property : element.properties) {
     if (property.name != "vertex_indices" && property.name != "vertex_index") continue;
@@ -46,8 +46,9 @@ const PlyProperty& find_index_list(const PlyElement& element, const ScanBuilder&
                kBadHeader);
 }
 
-/// Joins each corner of a triangle strip with the two before it, every second time the other way
-/// round; -1 starts a new strip. Repeated corners, which only steer the strip, make no face.
+/// Makes the triangles of a strip: each corner with the two before it, every second time in the
+/// opposite order. -1 starts a new strip. Repeated corners, which only steer the strip, make no
+/// face.
 class TriangleStrip {
  public:
   explicit TriangleStrip(ScanBuilder& builder) : builder_(builder) {}
@@ -158,8 +159,8 @@ class PlyBody {
   Decoder decoder_;
 };
 
-/// Tells the builder what the header promises; it must know before the first element is read,
-/// because faces may come before vertices.
+/// Tells the builder what the header promises. The builder must know it before the first element is
+/// read, because faces may come before vertices.
 void announce(const PlyHeader& header, ScanBuilder& builder) {
   const bool ascii = header.encoding == PlyHeader::Encoding::kAscii;
   bool has_vertices = false;

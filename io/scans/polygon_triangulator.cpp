@@ -7,8 +7,8 @@ namespace {
 
 constexpr std::int64_t kStepsPerCorner = 4096;
 
-/// Twice the vector area. Relative to the first corner, which keeps the digits of small polygons
-/// far from the coordinate origin.
+/// Returns twice the vector area. Corners are taken relative to the first one, which keeps the
+/// digits of small polygons far from the coordinate origin.
 Eigen::Vector3d newell_normal(std::span<const Eigen::Vector3d> corners) {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   for (std::size_t i = 1; i + 1 < corners.size(); ++i)
@@ -79,7 +79,7 @@ bool PolygonTriangulator::is_ear(std::int32_t corner) {
   for (const std::int32_t p : reflex_) {
     --steps_left_;
     if (!is_reflex_[p] || p == a || p == c) continue;
-    // A corner met twice (a bridge to a hole) lies on the ear's own corner and does not bar it.
+    // At a bridge to a hole another corner lies exactly on a corner of the ear. It does not matter.
     if (flat_[p] == flat_[a] || flat_[p] == flat_[corner] || flat_[p] == flat_[c]) continue;
     if (area(a, corner, p) >= 0 && area(corner, c, p) >= 0 && area(c, a, p) >= 0) return false;
   }
@@ -88,7 +88,7 @@ bool PolygonTriangulator::is_ear(std::int32_t corner) {
 
 void PolygonTriangulator::clip_ears(std::span<const Eigen::Vector3d> corners,
                                     const Eigen::Vector3d& normal) {
-  // Along the normal's largest component the projection keeps every orientation.
+  // A projection along the largest component of the normal keeps every orientation.
   Eigen::Index axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
   const Eigen::Index u = (axis + (normal[axis] < 0 ? 2 : 1)) % 3;
@@ -124,8 +124,8 @@ void PolygonTriangulator::clip_ears(std::span<const Eigen::Vector3d> corners,
     --left;
     for (const std::int32_t p : {before, after})
       if (is_reflex_[p] && area(previous_[p], p, next_[p]) > 0) is_reflex_[p] = 0;
-    // Not simply `after`: skipping one avoids fans of slivers. A spike that has come about where
-    // the polygon touches itself goes first, or ears might be seen beyond it.
+    // The search goes on one corner after `after`, which avoids fans of slivers. A spike, where the
+    // polygon touches itself, is cut off first, or ears beyond it might be found.
     corner = is_spike(before) ? before : is_spike(after) ? after : next_[after];
   }
   for (std::int32_t p = next_[corner]; next_[p] != corner; p = next_[p])

@@ -10,7 +10,7 @@
 namespace semigeo::io {
 namespace {
 
-constexpr std::size_t kVariantBytes = 1024;  // that tell the variant of a format
+constexpr std::size_t kVariantBytes = 1024;  // these many first bytes tell the variant
 
 std::string lower_case_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -65,7 +65,7 @@ Scan read_scan(const std::filesystem::path& path, const ScanLimits& limits) {
     if (source.compressed()) scan.format += ", gzip";
     return scan;
   } catch (const Error&) {
-    source.drain();  // throws if the gzip data is damaged, which then is the better explanation
+    source.drain();  // throws if the gzip data is damaged, which explains the failure better
     throw;
   }
 }

@@ -27,9 +27,9 @@ bool is_word(std::string_view text, std::string_view lower_case) {
                     [](char a, char b) { return lower(a) == b; });
 }
 
-/// Whether the file is text. The keyword alone does not tell, because the free header of a binary
-/// file may begin with it, but of binary data enough to hold a triangle is never all text: it
-/// holds the four bytes of the count and numbers around zero.
+/// Returns whether the file is text. The keyword alone does not tell, because the free header of a
+/// binary file may begin with it. But binary data with a triangle is never all text, because of the
+/// four bytes of the count and the numbers around zero.
 bool is_text(ByteSource& source) {
   source.fill(kPreambleBytes + kRecordBytes);
   std::string_view start = source.ahead().substr(0, 1024);
@@ -46,7 +46,7 @@ std::int64_t promised_triangles(const ByteSource& source) {
   return load<std::uint32_t>(source.ahead().data() + kHeaderBytes, std::endian::little);
 }
 
-/// Whether a plain file has exactly the size that its count of triangles asks for.
+/// Returns whether a plain file has exactly the size that its count of triangles asks for.
 bool has_binary_size(ByteSource& source) {
   if (source.compressed() || !source.fill(kPreambleBytes)) return false;
   return source.bytes_left() == kPreambleBytes + kRecordBytes * promised_triangles(source);
@@ -137,7 +137,7 @@ void read_binary(ByteSource& source, ScanBuilder& builder) {
                 "copy it again from its source or correct its extension");
   const std::int64_t count = promised_triangles(source);
   source.consume(kPreambleBytes);
-  // Asked before reading, because a file of another kind would fail with a stranger message.
+  // It is checked before reading, because another kind of file would give a confusing message.
   const std::int64_t left = source.bytes_left().value_or(kRecordBytes * count);
   if (left < kRecordBytes * count)
     builder.fail_promise("triangles", count, left / kRecordBytes,
@@ -150,7 +150,7 @@ void read_binary(ByteSource& source, ScanBuilder& builder) {
       builder.fail_promise("triangles", count, i, {Place::Unit::kByte, source.position()});
     }
     const Place place{Place::Unit::kByte, source.position()};
-    const char* const corners = source.ahead().data() + 12;  // behind the normal
+    const char* const corners = source.ahead().data() + 12;  // the corners follow the normal
     std::array<float, 9> xyz;
     for (int k = 0; k < 9; ++k) xyz[k] = load<float>(corners + 4 * k, std::endian::little);
     for (int k = 0; k < 9; k += 3) builder.add_point(xyz[k], xyz[k + 1], xyz[k + 2], place);
@@ -170,7 +170,7 @@ Scan read_stl(ByteSource& source, const ScanLimits& limits) {
 }
 
 std::string variant_of(std::string_view begin) {
-  // The header of a binary file may begin with the same word, but its numbers hold zeros.
+  // The header of a binary file may begin with the same word, but its numbers contain zeros.
   return begin.starts_with("solid") && begin.find('\0') == std::string_view::npos ? "STL ascii"
                                                                                   : "STL binary";
 }

@@ -21,7 +21,7 @@ bool is_newline(char c) {
 constexpr const char* kCopyAgain = "copy the file again from its source";
 constexpr const char* kMendLine = "correct the line or export the scan again";
 
-/// A word for a message: cut to a readable length, without what a terminal would obey.
+/// Returns a word for a message. It is cut to a readable length and has no control characters.
 std::string quoted(std::string_view word) {
   constexpr std::size_t kShown = 40;
   std::string text = "'";
@@ -89,7 +89,7 @@ bool TextScanner::next_line() {
     const char c = *cursor_;
     if (is_newline(c)) break;
     in_comment |= c == '#' && syntax_.hash_comments;
-    // A comment may well end in a backslash (paths of Windows) and does not continue.
+    // A backslash at the end of a comment, as in paths of Windows, does not continue the line.
     if (c == '\\' && syntax_.backslash_continues && !in_comment && skip_continuation()) continue;
     ++cursor_;
   }
@@ -102,7 +102,8 @@ void TextScanner::skip_newline() {
   ++line_;
   if (*cursor_++ == '\n') return;
   const bool line_feed = cursor_ < end_ && *cursor_ == '\n';
-  // In a text of single CRs a following LF is no part of the line's end (it may be binary data).
+  // In a text whose lines end in CR alone, an LF after it is not part of the end of the line. It
+  // may be binary data.
   if (!line_feed) lone_carriage_returns_ = true;
   if (line_feed && !lone_carriage_returns_) ++cursor_;
 }

@@ -46,7 +46,7 @@ class Estimates {
 
   /// Returns what the surface job of a scan needs. `levels` counts level 0.
   Estimate of(const ScanSize& scan, int levels, int threads) const;
-  /// Returns what a surface of so many vertices needs, by the rates of all formats.
+  /// Returns what a surface with this number of vertices needs, by the rates of all formats.
   Estimate of(double vertices, int levels, int threads) const;
 
   const std::map<std::string, Rates>& by_format() const { return by_format_; }

@@ -20,7 +20,7 @@ struct JobRequest {
   std::filesystem::path log;              ///< The file to which the output of the job is appended.
 };
 
-/// The outcome of a job, or how much work was done meanwhile.
+/// The outcome of a job, or the work that was done since the last reply.
 struct JobReply {
   /// Tells whether the job goes on, is done, or has failed.
   enum class Kind { kWorked, kDone, kFailed };

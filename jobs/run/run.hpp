@@ -58,8 +58,8 @@ struct RunHooks {
   std::function<void(const std::vector<PlannedJob>&)> planned = {};
   /// Returns the runner of the jobs, which must live as long as the run.
   std::function<Runner&(const std::vector<PlannedJob>&)> runner;
-  /// Returns the settings of the execution; called after the lock is taken, as the home may have
-  /// learned meanwhile.
+  /// Returns the settings of the execution; called after the lock is taken, because the home may
+  /// have learned until then.
   std::function<ExecutionSettings()> settings;
   /// Receives a sentence about each problem that does not make the run fail.
   std::function<void(const std::string&)> warn;
@@ -70,8 +70,8 @@ struct RunHooks {
 
 /// Makes a plan and executes it: takes the lock of the home, plans, opens the journal, executes the
 /// jobs, learns for the next run, and cleans up. Throws LockedError if another run has the home,
-/// and io::Error if the home cannot be written although jobs have to run. Where nothing has to run
-/// a home that cannot be written is no failure.
+/// and io::Error if the home cannot be written although jobs have to run. If no job has to run, a
+/// home that cannot be written is no failure.
 RunResult perform_run(const RunSettings& settings, const RunHooks& hooks,
                       const RunClock& clock = steady_clock());
 

@@ -25,7 +25,7 @@ struct JobStart {
 struct JobBegun {
   std::size_t number;
 };
-/// Work was done meanwhile, in vertices times levels.
+/// Work was done since the last event, in vertices times levels.
 struct WorkDone {
   std::int64_t vertex_levels;
 };

@@ -8,9 +8,9 @@ namespace semigeo::jobs {
 
 /// Says which points of a level are features.
 struct FeatureOptions {
-  /// A maximum of curvature is compared with what lies within so many scales of the level, along
-  /// the surface, and must stand out by a thousandth. With 0 it is compared with its ring of
-  /// neighbours alone, as in the thesis.
+  /// The radius, along the surface and in scales of the level, within which a maximum of curvature
+  /// must be the highest. It must stand out by a thousandth. With 0 the maximum is compared with
+  /// its ring of neighbours alone, as in the thesis.
   double radius = 1.5;
   double min_completeness = 0.6;  ///< Least completeness of the patch of a feature's vertex.
 };

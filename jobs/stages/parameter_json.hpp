@@ -75,7 +75,7 @@ nlohmann::json json_of(const ParameterTable<Owner>& table, const Owner& owner) {
 }
 
 /// Reads what `json_of` returns. Throws std::runtime_error if a parameter is missing or is not of
-/// its type. What is not in the table is passed over.
+/// its type. Members that are not in the table are ignored.
 template <typename Owner>
 Owner from_json(const ParameterTable<Owner>& table, const nlohmann::json& json) {
   try {

@@ -29,9 +29,9 @@ struct PartitionJobResult {
 /// the partition cannot be written. Neither threads nor memory change the result.
 PartitionJobResult run_partition_job(const PartitionJob& job, const engine::RunContext& context);
 
-/// Returns the shapes of each partition of a library of so many models, in order. Together the
-/// partitions have every shape once. The result depends on the number of models alone, so that a
-/// plan can be made before there is a run. The bytes of the library do not depend on it.
+/// Returns the shapes of each partition of a library with this number of models, in order. Together
+/// the partitions have every shape once. The result depends on the number of models alone, so that
+/// a plan can be made before there is a run. The bytes of the library do not depend on it.
 std::vector<io::ShapeRange> partition_shapes(std::int64_t models);
 
 }  // namespace semigeo::jobs

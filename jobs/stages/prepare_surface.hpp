@@ -13,10 +13,10 @@ namespace semigeo::jobs {
 
 /// Says what is done to a repaired scan before it is smoothed. By default nothing is done.
 struct PreparationOptions {
-  std::int64_t fill_holes = 0;            ///< Holes of at most so many edges are filled; 0: none.
+  std::int64_t fill_holes = 0;            ///< Most edges of a hole that is filled; 0: none is.
   double decimate = 0;                    ///< Tolerance of the decimation; 0: none.
   bool decimate_in_length_units = false;  ///< The unit of `decimate`; otherwise mean edge lengths.
-  std::int64_t target_vertices = 0;       ///< Vertices are removed down to so many; 0: no limit.
+  std::int64_t target_vertices = 0;  ///< Number of vertices at which decimation ends; 0: no limit.
 
   bool decimates() const { return decimate > 0 || target_vertices > 0; }
   bool any() const { return fill_holes > 0 || decimates(); }

@@ -8,11 +8,11 @@ namespace semigeo::jobs {
 /// Says what recognition looks at on a surface. It is part of the key of a library.
 struct RecognitionParameters {
   int levels = 4;           ///< Number of octave levels 0, 1, ... of a coarse scan.
-  int most_features = 400;  ///< The strongest features of each level and kind are kept, so many.
+  int most_features = 400;  ///< Largest number of features of each level and kind, the strongest.
   bool torsion = true;      ///< Maxima of torsion are features, as maxima of curvature are.
   int samples = 4000;       ///< Largest number of samples of the surface.
-  /// Fine scans get more levels, until sigma is this share of the diagonal. What another scan of
-  /// the object shows at its first level must be among them, however much coarser that scan is.
+  /// Fine scans get more levels, until sigma is this share of the diagonal. Their scales must
+  /// include that of the first level of a much coarser scan of the same object.
   double least_reach = 0.015;
   bool rim = false;  ///< Samples near the boundary are marked; libraries do not store the marks.
 };

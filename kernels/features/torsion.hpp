@@ -25,8 +25,9 @@ struct ArcSamples {
 /// polyline without length has one sample.
 ArcSamples resample(std::span<const Eigen::Vector3d> points, bool closed, double spacing);
 
-/// Returns the length of a polyline, in the units of its points. If it is closed, the segment from
-/// its last point to its first is included.
+/// Returns the length of a polyline, in the units of its points. If it is closed, the length
+/// includes the segment from the last point to the first. A polyline of fewer than two points has
+/// length 0.
 double length_of(std::span<const Eigen::Vector3d> points, bool closed);
 
 /// Returns the torsion at each of the equidistant samples of a curve, in 1 / units of the samples.

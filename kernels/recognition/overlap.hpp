@@ -85,8 +85,8 @@ struct RefineOptions {
 
 /// Moves, turns and scales a posed model until it lies on the scene's surface, by least squares of
 /// the distances of its samples from the planes of the nearest scene samples (iterative closest
-/// points). What the scene does not fix, such as the place on a plane, stays. The result depends on
-/// the arguments alone.
+/// points). Motions that the scene does not determine, such as a shift along a plane, are left out.
+/// The result depends on the arguments alone.
 Similarity refine_pose(const SurfaceSamples& model, double diagonal, const Similarity& pose,
                        const SampleTree& scene, const RefineOptions& options);
 

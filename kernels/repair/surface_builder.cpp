@@ -197,7 +197,7 @@ std::int64_t split_fans(Surface& surface) {
         seen[h] = true;
         surface.triangles[face_of(h)][corner_of(h)] = vertex;
       };
-      for (const std::int32_t h : OutgoingRange(surface, start)) claim(h);
+      for (const std::int32_t h : outgoing_from(surface, start)) claim(h);
       for (std::int32_t h = surface.twin[start]; h != kNone && !seen[next(h)];
            h = surface.twin[h]) {
         h = next(h);

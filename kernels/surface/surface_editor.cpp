@@ -106,7 +106,7 @@ std::int32_t SurfaceEditor::add_vertex(const Birth& birth) {
 
 /// Replaces the vertex of the fan that begins with half-edge `first`.
 void SurfaceEditor::move_fan(std::int32_t first, std::int32_t vertex) {
-  for (const std::int32_t h : OutgoingRange(mesh_, first))
+  for (const std::int32_t h : outgoing_from(mesh_, first))
     mesh_.triangles[face_of(h)][corner_of(h)] = vertex;
 }
 
