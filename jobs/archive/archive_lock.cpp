@@ -127,7 +127,7 @@ bool take_over(const fs::path& ours, const fs::path& file) {
 
 ArchiveLock::ArchiveLock(const fs::path& archive)
     : file_(archive / kFileName), owner_(this_process()) {
-  io::AtomicFile ours(file_);  // for its name, and to be removed whatever comes
+  io::AtomicFile ours(file_);  // it has a name of its own, and is removed in any case
   {
     const engine::Descriptor text =
         engine::open_file(ours.temporary_path(), O_WRONLY | O_CREAT | O_EXCL);
@@ -143,7 +143,8 @@ ArchiveLock::ArchiveLock(const fs::path& archive)
 
 ArchiveLock::~ArchiveLock() {
   if (owner_.pid != getpid()) return;
-  // Nobody replaces the lock of the living; one that was removed by hand may be another's by now.
+  // No process replaces the lock of a living owner. But if the lock was removed by hand, another
+  // process may have it now.
   const engine::Descriptor lock = engine::open_file(file_, O_RDONLY);
   const auto owner = lock ? owner_in(content_of(lock)) : std::nullopt;
   if (owner && owner->process == owner_) unlink(file_.c_str());

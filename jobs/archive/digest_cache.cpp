@@ -125,7 +125,7 @@ const DigestCache::Entry* DigestCache::find(const std::string& path,
 }
 
 void DigestCache::remember(const std::string& path, const Reading& reading) {
-  // A line ends with its path: a path of several lines is not worth a notation.
+  // A line ends with its path. Paths with line ends are not remembered.
   if (reading.is_trustworthy() && path.find('\n') == std::string::npos) {
     entries_[path] = {.keys = reading.keys, .stamp = *reading.before, .used = true};
   } else {
@@ -200,7 +200,8 @@ fs::path DigestCache::file_of(const std::string& path) const {
 void DigestCache::write() {
   std::string body;
   for (const auto& [path, entry] : entries_) {
-    // Those of other folders whose scans are in this archive stay.
+    // Entries that were not used are kept as long as their files exist. They belong to scans in
+    // other folders.
     if (!entry.used && !stamp_of(file_of(path))) continue;
     const FileStamp& stamp = entry.stamp;
     body += entry.keys.input_xxh3 + ' ' + entry.keys.job_key + ' ' + std::to_string(stamp.size) +

@@ -25,11 +25,13 @@ constexpr double kMemorySafety = 1.4;
 constexpr double kBaseSeconds = 0.02;
 constexpr double kMemoryBytes = 500;
 constexpr double kMicroseconds = 6;
-constexpr double kUnknownFileBytes = 20;  // of formats not listed: rather too many vertices
-constexpr double kMostOff = 20;           // factor between a rate that is learned and the built-in
+constexpr double kUnknownFileBytes =
+    20;                          // formats that are not listed; gives rather too many vertices
+constexpr double kMostOff = 20;  // largest factor between a learned rate and the built-in one
 constexpr std::size_t kFewestJobs = 3;
 constexpr std::size_t kMostJobs = 200;
-/// In smaller scans, the costs that do not grow with the scan are larger than those that do.
+/// The least number of vertices of a scan from which rates are learned. In smaller scans the
+/// constant costs dominate.
 constexpr std::int64_t kFewestVertices = 5000;
 
 /// The bytes of a file for each vertex, with its two triangles.

@@ -24,7 +24,7 @@ constexpr std::string_view kBegin = "{\"crc\":\"";
 constexpr std::string_view kAfterChecksum = "\",";
 constexpr std::size_t kChecksumDigits = 8;
 constexpr std::size_t kLongestError = 4096;
-constexpr std::size_t kLongestLine = std::size_t{1} << 16;  // what is longer, nobody has written
+constexpr std::size_t kLongestLine = std::size_t{1} << 16;  // no version writes longer lines
 
 std::string checksum(std::string_view text) {
   return io::xxh3_of_text(text).substr(0, kChecksumDigits);
@@ -205,7 +205,7 @@ std::int64_t read_journal(const fs::path& archive,
       piece.remove_prefix(end + 1);
     }
   }
-  // Without an end it is torn, or another run is writing it.
+  // A last line without an end is torn, or is being written by another run.
   if (!line.empty() || too_long) end_line();
   return damaged;
 }

@@ -55,7 +55,7 @@ Life life_of(const ProcessIdentity& process) {
   if (!process.boot_id.empty() && !boot.empty() && process.boot_id != boot) return Life::kDead;
   if (process.pid <= 0 || (kill(process.pid, 0) != 0 && errno == ESRCH)) return Life::kDead;
   const Status status = status_of(process.pid);
-  if (status.state == '\0') return Life::kAlive;  // another user's, where those are hidden
+  if (status.state == '\0') return Life::kAlive;  // /proc may hide the processes of other users
   const bool ended = status.state == 'Z' || status.state == 'X';
   const bool another = process.started != 0 && status.started != process.started;
   return ended || another ? Life::kDead : Life::kAlive;

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kFileName = "sources.json";
-constexpr std::string_view kMark = "--";  // what a base never has where this stands
+constexpr std::string_view kMark = "--";  // a base never has this in the same place
 constexpr std::size_t kHashDigits = 8;
 
 std::string with_hash(const Unnamed& scan) {

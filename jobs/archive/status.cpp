@@ -17,7 +17,7 @@ class Reader {
 
   void read(const JournalEntry& entry) {
     if (const auto* run = std::get_if<RunStarted>(&entry.event)) begin(*run, entry);
-    if (entry.run != run_) return;  // of a run that ended in the midst of another's
+    if (entry.run != run_) return;  // an event of another run
     last_time_ = entry.time;
     if (const auto* job = std::get_if<JobStarted>(&entry.event)) started_[job->job] = entry.time;
     if (const auto* job = std::get_if<JobEnded>(&entry.event)) end(*job);

@@ -122,7 +122,7 @@ int build(LibraryOptions& options) {
 
 int add(LibraryOptions& options) {
   const LibraryPlace place = place_at(options.library);
-  io::library_key(place.library);  // refuses what is none, before anything is made
+  io::library_key(place.library);  // throws if it is not a library, before anything is made
   const Models added = models_in(options.inputs);
   return make(options, place, [&](DigestCache&) {
     Models models = kept_models(place, {});

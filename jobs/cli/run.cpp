@@ -25,8 +25,8 @@ struct RunOptions {
   bool library = false;  ///< A library of all datasets of the archive is made as well.
 };
 
-/// Puts the configuration into the archive if it has none yet, and records the scans of its
-/// datasets. Errors come here, before hours of work.
+/// Writes the configuration into the archive if it has none yet, and records the scans of its
+/// datasets. It is called before the jobs run, so that errors are reported before hours of work.
 void prepare_archive(const fs::path& archive, const std::string& effective_config,
                      const std::vector<PlannedJob>& plan) {
   const fs::path config_file = archive / "semigeo.toml";

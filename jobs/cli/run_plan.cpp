@@ -98,7 +98,7 @@ int run(const ExecutionOptions& options, const PlanSource& source) {
   if (options.explain && !options.json)
     hooks.planned = [](const std::vector<PlannedJob>& plan) {
       print_plan(plan, false, true);
-      std::fflush(stdout);  // it is to be read while the jobs run
+      std::fflush(stdout);  // so that it can be read while the jobs run
     };
   int exit_code = kAllDone;
   hooks.ended = [&](const RunResult& result) {

@@ -67,7 +67,7 @@ void print(const ArchiveStatus& status) {
       std::printf(", %s left", short_duration(*left).c_str());
     std::printf("\n");
   }
-  // With datasets alone the numbers above say it.
+  // If all jobs made datasets, the numbers above are enough.
   if (std::ranges::any_of(status.done_by_kind,
                           [](const auto& kind) { return kind.first != "surface"; }))
     for (const auto& [kind, number] : status.done_by_kind)

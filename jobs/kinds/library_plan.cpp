@@ -84,7 +84,7 @@ std::vector<LibraryModel> models_of(const fs::path& archive, const std::vector<P
     const Job& job = plan[i].job;
     if (job.kind != &surface_kind()) continue;
     LibraryModel& model = models[job.name];
-    // What was made of the scan when it could be read is a model still.
+    // The dataset that was made while the scan could be read is still a model.
     if (!is_readable(plan[i]) && !model.dataset_key.empty()) continue;
     model = {.name = job.name,
              .dataset = job.output,
@@ -110,7 +110,7 @@ void plan_library(std::vector<PlannedJob>& plan, const std::vector<LibraryModel>
           output_key(triplets_kind(), run_path(place.parts, model.name), KeyCheck::kWhole));
       continue;
     }
-    // An unreadable scan is a failure once: that of its own job.
+    // An unreadable scan is reported once, as the failure of its own job.
     if (model.maker && !model.error.empty()) continue;
     PlannedJob planned = triplets_of(model, place.parts, parameters);
     if (is_readable(planned)) keys.push_back(planned.job.key);
@@ -123,7 +123,7 @@ void plan_library(std::vector<PlannedJob>& plan, const std::vector<LibraryModel>
   library.job = library_job({.models = names, .partitions = partitions, .parameters = parameters},
                             place.library, place.parts, keys);
   judge_output(library);
-  // While the library is what it should be, nobody is going to read its runs.
+  // If the library is up to date, its runs are not read.
   for (const std::size_t triplets : after)
     if (is_readable(plan[triplets]))
       judge_output(plan[triplets], library.up_to_date ? KeyCheck::kHead : KeyCheck::kWhole);

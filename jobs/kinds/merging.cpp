@@ -11,10 +11,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Merging is short beside surface jobs; these rates are not learned.
+// These rates are not learned, because merging is short in comparison with surface jobs.
 constexpr double kTripletsOfModel = 7000;
 constexpr double kSecondsOfTriplet = 2e-6;
-constexpr double kSecondsOfModel = 2e-4;  // to open its run
+constexpr double kSecondsOfModel = 2e-4;  // time to open the run of a model
 constexpr double kBaseSeconds = 0.05;
 constexpr double kBaseBytes = 60e6;
 constexpr double kBytesOfModel = 1000;
@@ -29,7 +29,8 @@ std::vector<std::string> keep_models_with_runs(std::vector<std::string>& models,
   std::vector<std::string> kept;
   std::vector<std::string> kept_keys;
   for (std::string& model : models) {
-    // Planning has read in full the runs that were there; the others have been written just now.
+    // Reading the head is enough: planning has read all bytes of the runs that existed, and the
+    // others were written by this run.
     const std::string& key = keys.of(triplets_kind(), run_path(parts, model));
     if (key.empty()) continue;
     kept.push_back(std::move(model));

@@ -40,13 +40,13 @@ static void from_json(const json& object, RecogniseJobData& data) {
 
 namespace {
 
-// What a recognition needs besides smoothing its scene, for each byte of the library.
+// The costs of a recognition besides smoothing the scene, for each byte of the library.
 constexpr double kBaseBytes = 60e6;
 constexpr double kLibraryMemory = 1;
 constexpr double kLibrarySeconds = 1e-9;
 constexpr double kThesisMemory = 8;
 constexpr double kThesisSeconds = 5e-8;
-constexpr double kVerifySeconds = 0.5;  // poses
+constexpr double kVerifySeconds = 0.5;  // time to verify poses
 
 class RecogniseKind final : public TypedJobKind<RecogniseJobData, RecogniseJobResult> {
  public:

@@ -28,7 +28,7 @@ std::vector<Reason> differences(const io::DatasetOrigin& origin, const Job& job)
   const auto parameters_before = nlohmann::json::parse(origin.parameters_json, nullptr, false);
   std::ranges::move(parameter_differences(parameters_before, json_of(surface_data(job).parameters)),
                     std::back_inserter(reasons));
-  // What this program would have called the same thing says whether it would have made the same.
+  // If this program gives another key to the old inputs, it makes other bytes of them.
   if (origin.job_key != surface_key(job.name, origin.input_xxh3, origin.parameters_json))
     reasons.push_back({.kind = Kind::kProgram, .before = origin.creator_version});
   return reasons;

@@ -118,7 +118,7 @@ class Execution {
     begin(job);
     outcomes_[job] = std::move(event.outcome);
     const JobOutcome& outcome = outcomes_[job];
-    // A job that never ran, since its inputs are not there, has no failure of its own.
+    // A job that never ran because its inputs are missing is skipped. It has not failed itself.
     const bool skipped = outcome.state == JobState::kFailed && outcome.threads == 0 &&
                          scheduler_.follows_failure(job);
     end(job, skipped ? JobState::kSkipped : outcome.state);

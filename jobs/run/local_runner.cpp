@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using engine::ChildProcesses;
 
-// Limits are for what has gone wrong: they are generous beside the estimate.
+// Limits are meant for jobs that have gone wrong, so they are much higher than the estimate.
 constexpr double kTimeoutFactor = 50;
 constexpr double kLeastTimeout = 600;
 constexpr std::uint64_t kMemoryFactor = 4;
@@ -66,7 +66,7 @@ std::string cause_of(const ChildProcesses::Ended& ended, double timeout) {
 std::string sentence_about(const Job& job, const std::string& cause, const fs::path& log) {
   const JobWords& words = job.kind->words();
   const std::string printed = last_lines(log);
-  const std::string where =  // an empty log is not kept
+  const std::string where =  // because an empty log is not kept
       printed.empty() ? "; " : "; it last said: " + printed + "; see " + log.string() + ", and ";
   return subject_of(job).string() + ": its " + (words.stands_for_scan ? "" : words.kind + ' ') +
          "job " + cause + where + "run again" + words.kill_remedy;
@@ -152,7 +152,7 @@ RunnerEvent LocalRunner::answered(std::map<Child, Running>::iterator at, const s
     reply = job_reply_from(line);
     outcome.result = job.planned->job.kind->result_from_json(reply.result);
   } catch (const std::exception&) {
-    children_.kill(child);  // its end is the failure
+    children_.kill(child);  // its end is reported as the failure
     return WorkDone{0};
   }
   if (reply.kind == JobReply::Kind::kWorked) return WorkDone{reply.worked};
@@ -175,7 +175,8 @@ JobLost LocalRunner::lost(std::map<Child, Running>::iterator at,
   running_.erase(at);
   const Job& job = was.job.planned->job;
   io::remove_stale_partials(job.output.parent_path());
-  // Who ends this process by its group or container, as Slurm and systemd do, ends children too.
+  // A SIGTERM that came with a request to stop was sent to the whole run: Slurm and systemd signal
+  // all processes of a group.
   const bool wanted = ending_ || (ended.signal == SIGTERM && drain_.requests() > 0);
   const std::string cause = cause_of(ended, was.timeout);
   return {.number = was.job.number,

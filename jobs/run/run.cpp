@@ -79,7 +79,7 @@ class Run {
     io::remove_stale_partials(settings_.home);
     if (hooks_.prepare) hooks_.prepare(result_.plan);
     remove_damaged_outputs(result_.plan);
-    // A run that is killed must not have hashed in vain.
+    // Digests are saved now, so that they are not lost if the run is killed.
     if (settings_.is_archive) try_to([&] { cache_.write(); });
     journal_.emplace(settings_.home, RunStarted{.version = settings_.program_version,
                                                 .threads = settings_.threads,

@@ -29,8 +29,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds kReportInterval{250};
-constexpr int kKeptMemory = 64 << 20;       // free bytes of the heap, from job to job
-constexpr int kLeastOwnMapping = 32 << 20;  // bytes of an allocation that is given back at once
+constexpr int kKeptMemory = 64 << 20;       // free bytes that the heap keeps from job to job
+constexpr int kLeastOwnMapping = 32 << 20;  // larger allocations are given back at once
 
 bool write_line(int descriptor, std::string line) {
   line += '\n';
@@ -228,7 +228,8 @@ JobReply do_job(const JobRequest& request, JobLog& log, Reporter& reporter) {
                   request.job.kind->words().memory_remedy;
   } catch (const io::Error& e) {
     reply.error = e.what();
-  } catch (const std::exception& e) {  // a thread that finds no room for its stack, for one
+  } catch (
+      const std::exception& e) {  // for example if there is no memory for the stack of a thread
     limit_address_space(0);
     reply.error = subject_of(request.job).string() + ": " + e.what() +
                   "; run again, or give --memory-per-job more if its " +
@@ -238,7 +239,8 @@ JobReply do_job(const JobRequest& request, JobLog& log, Reporter& reporter) {
   log.end();
   limit_address_space(0);
   const double peak = peak_bytes();
-  // What the next job is allowed counts from what this process holds; a little spares it much.
+  // Free memory is given back, because the limit of the next job is added to what this process
+  // holds. A little is kept, because that saves much time.
   if (mallinfo2().fordblks > std::size_t{kKeptMemory}) malloc_trim(0);
   reply.worked = reporter.unreported();
   reply.cpu_seconds = process_usage().cpu_seconds - cpu_before;
@@ -250,7 +252,8 @@ JobReply do_job(const JobRequest& request, JobLog& log, Reporter& reporter) {
 
 int serve_jobs(int requests, int answers, const JobKinds& kinds) {
   Lines lines(requests);
-  // Memory comes from the system as zeroed pages, one fault each: what is freed is soon used again.
+  // The system gives memory as zeroed pages, each with a page fault. So freed memory is kept for
+  // the next use.
   mallopt(M_MMAP_THRESHOLD, kLeastOwnMapping);
   mallopt(M_TRIM_THRESHOLD, kKeptMemory);
   JobLog log;
@@ -265,7 +268,7 @@ int serve_jobs(int requests, int answers, const JobKinds& kinds) {
     }
     Reporter reporter(answers);
     const JobReply reply = do_job(request, log, reporter);
-    if (!write_line(answers, to_line(reply))) return 0;  // nobody listens any more
+    if (!write_line(answers, to_line(reply))) return 0;  // the reader has ended
   }
   return 0;
 }

@@ -59,7 +59,7 @@ std::string in_one_line(std::string text) {
 
 [[noreturn]] void refuse(const std::string& program, const std::string& problem,
                          const Answer& answer) {
-  // More tasks than the cluster's MaxArraySize.
+  // The array has more tasks than the cluster's MaxArraySize.
   const bool too_many = answer.text.find("Invalid job array") != std::string::npos;
   throw io::Error(program, "", problem + ", and said: " + in_one_line(answer.text),
                   too_many ? "give --scans-per-task more" : kRemedy);
@@ -96,7 +96,8 @@ std::vector<std::string> sbatch_arguments(const SlurmArray& array) {
       "--nodes=1",
       "--ntasks=1",
       "--cpus-per-task=" + std::to_string(array.cpus),
-      // Relative to the folder: '%' and '\' in its name would mean something in a pattern.
+      // The path is relative to the folder, because '%' and '\' in the folder's name would have a
+      // meaning in the pattern.
       "--chdir=" + fs::absolute(array.folder).string(),
       "--output=task-%a.log",
       "--open-mode=append",
@@ -147,7 +148,7 @@ std::string SlurmCommands::submit(const SlurmArray& array) const {
   std::vector<std::string> arguments = sbatch_arguments(array);
   arguments.insert(arguments.begin(), sbatch_);
   const Answer answer = ask_successfully(arguments);
-  // "1234", or "1234;cluster"; warnings may stand around it.
+  // The output is "1234" or "1234;cluster". There may be warnings before and after it.
   std::istringstream lines(answer.text);
   for (std::string line; std::getline(lines, line);)
     if (const std::string id = line.substr(0, line.find(';')); is_number(id)) return id;

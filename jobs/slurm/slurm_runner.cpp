@@ -34,7 +34,7 @@ JobOutcome outcome_of(const TaskResult& told, const JobKind& kind) {
   try {
     outcome.result = kind.result_from_json(told.result);
   } catch (const nlohmann::json::exception&) {
-    outcome.result.reset();  // the output itself has the last word
+    outcome.result.reset();  // the output itself decides whether the job is done
   }
   return outcome;
 }
@@ -67,7 +67,7 @@ void SlurmRunner::start(const std::vector<JobStart>& jobs, const Say& say) {
     for (SlurmStage& stage : stages_of(plan_, numbers, options_, slurm_, {archive_, folder_}))
       submit(std::move(stage));
   } catch (...) {
-    if (stages_.empty()) remove_folder();  // nobody is going to read it
+    if (stages_.empty()) remove_folder();  // no task will read it
     throw;
   }
 }
@@ -127,7 +127,7 @@ void SlurmRunner::watch(WatchedStage& watched) {
     }
     read_results_of(task, results_of(list, number));
     if (at != queue->end()) {
-      task.gone = false;  // requeued, perhaps
+      task.gone = false;  // Slurm may have requeued it
       tell_reason(at->second);
       continue;
     }

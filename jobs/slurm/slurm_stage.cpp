@@ -19,7 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMemoryFactor = 1.5;
-constexpr std::uint64_t kTaskMemory = std::uint64_t{512} << 20;  // of the task itself
+constexpr std::uint64_t kTaskMemory = std::uint64_t{512}
+                                      << 20;  // memory of the process of the task itself
 constexpr double kTimeFactor = 4;
 constexpr double kTimeoutFactor = 10;
 constexpr double kLeastTimeout = 600;
@@ -58,7 +59,7 @@ Job with_absolute_paths(Job job) {
   return job;
 }
 
-/// What each task of a stage gets. It is enough for the task that needs most.
+/// Holds what each task of a stage gets. It is enough for the task that needs most.
 struct Needs {
   double bytes = 0;        ///< Memory of the jobs that run at the same time.
   double seconds = 0;      ///< Time of all jobs.
@@ -97,7 +98,7 @@ TaskSettings size_up(SlurmArray& array, const Needs& needs, const ExecutorOption
   }
   if (settings.timeout_seconds <= 0)
     settings.timeout_seconds = std::max(kLeastTimeout, kTimeoutFactor * needs.longest_job);
-  // A scan that hangs must not cost the others of its task their time.
+  // A job that hangs must not use up the time of the other jobs of its task.
   array.seconds = kTimeFactor * needs.seconds + (1 + options.retries) * settings.timeout_seconds;
   if (options.most_seconds > 0) settings.deadline = seconds_since_1970() + options.most_seconds;
   return settings;

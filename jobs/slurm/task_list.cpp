@@ -185,7 +185,7 @@ TaskResults read_results(const fs::path& file) {
       object.at("attempts").get_to(outcome.attempts);
       results[unescaped(object.at("job").get<std::string>())] = std::move(result);
     } catch (const std::exception&) {
-      continue;  // the output itself will tell
+      continue;  // the output itself decides
     }
   }
   return results;
