@@ -25,7 +25,7 @@ struct AnalyticOptions {
   int threads = 0;
 };
 
-/// One mesh under one way to sample it.
+/// Describes one mesh and one way of sampling it.
 struct Case {
   std::string shape;
   std::string tessellation;
@@ -33,11 +33,11 @@ struct Case {
   std::string coordinates;
   std::int64_t vertices = 0;
   bool open = false;
-  std::vector<std::vector<LevelErrors>> levels;  ///< one list for each noise asked for
+  std::vector<std::vector<LevelErrors>> levels;  ///< Levels for each noise.
   VertexTime time;
 };
 
-/// The level with the least median error of one curvature.
+/// Returns the level with the least median error of one curvature.
 int best_level(const std::vector<LevelErrors>& levels, int zone, ErrorSummary ZoneErrors::*which) {
   int best = 0;
   for (std::size_t k = 1; k < levels.size(); ++k)
@@ -61,7 +61,7 @@ std::vector<Case> measure(const AnalyticOptions& options) {
                 .coordinates = coordinates_of(coordinates),
                 .schedule = options.schedule == "octaves" ? jobs::Schedule::kOctaves
                                                           : jobs::Schedule::kUniform,
-                .remesh = false};  // the truth is known per vertex
+                .remesh = false};  // the true curvature is known at the vertices alone
             const shapes::AnalyticMesh exact = shapes::tessellate(shape, kind, vertices);
             const double edge = shapes::mean_edge_length(exact.mesh);
             Case c{shape.name,
@@ -108,7 +108,7 @@ std::string csv(const std::vector<Case>& cases, const std::vector<double>& noise
   return text;
 }
 
-/// "median / p95" with three digits each, and the level if it was chosen.
+/// Returns "median / p95" with three digits each, and the level if it was chosen.
 std::string cell(const std::vector<LevelErrors>& levels, int zone,
                  ErrorSummary ZoneErrors::*which) {
   const int level = best_level(levels, zone, which);

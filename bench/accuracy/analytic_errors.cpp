@@ -17,10 +17,10 @@ using bench::median;
 using bench::quantile;
 
 constexpr int kInside = 8;
-/// Below this share of what the other curvature makes of it, a curvature is no scale for errors.
+/// A curvature below this share of what the other curvature suggests is no scale for errors.
 constexpr double kVanishing = 0.1;
 
-/// A mesh ready for the engine, with the truth in the engine's order.
+/// Holds a surface and the true curvature of its vertices, in the order of the surface.
 struct OrderedMesh {
   kernels::Surface surface;
   std::vector<shapes::SurfacePoint> truth;
@@ -37,7 +37,7 @@ OrderedMesh ordered(const shapes::AnalyticMesh& mesh) {
   return result;
 }
 
-/// Edges to the nearest rim; `kInside` for that many or more.
+/// Returns the number of edges from each vertex to the nearest rim, at most `kInside`.
 std::vector<int> rim_distances(const kernels::Surface& surface) {
   std::vector<int> distance(surface.vertex_count(), kInside);
   for (std::int32_t v = 0; v < surface.vertex_count(); ++v)
@@ -52,7 +52,7 @@ std::vector<int> rim_distances(const kernels::Surface& surface) {
   return distance;
 }
 
-/// -1: none.
+/// Returns the zone of a vertex at this distance from a rim, or -1 if it lies in none.
 int zone_of(int distance) {
   if (distance >= kInside) return static_cast<int>(Zone::kInside);
   return distance <= 2 ? static_cast<int>(Zone::kRing0) + distance : -1;

@@ -28,10 +28,10 @@ DirectionSpread spread(const std::vector<double>& values) {
   return s;
 }
 
-/// Errors of one kind, one a vertex.
+/// Collects the errors of one kind of all vertices.
 struct Sample {
-  std::vector<double> of_vertex;   ///< relative to the vertex' own curvature
-  std::vector<double> of_surface;  ///< relative to the surface's
+  std::vector<double> of_vertex;   ///< Errors relative to the curvature of the vertex.
+  std::vector<double> of_surface;  ///< Errors relative to the curvature of the surface.
 
   DirectionErrors::Summary summary() {
     return {mean(of_vertex), median(of_vertex), quantile(of_vertex, 0.95), mean(of_surface),

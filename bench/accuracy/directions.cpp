@@ -34,15 +34,15 @@ struct DirectionOptions {
   int threads = 0;
 };
 
-/// One point of the plots.
+/// Describes one point of the plots.
 struct Measurement {
   int iteration;
   double step_factor;
-  double step;  ///< in the scan's unit
+  double step;  ///< In the scan's length unit.
   DirectionErrors gaussian, mean;
 };
 
-/// Calls `use(iteration, surface, fields)` at every iteration asked for. The surface's points are
+/// Calls `use(iteration, surface, fields)` at each of the iterations. The surface's points are
 /// in multiples of `unit` scan units, which keeps squares of lengths within single precision.
 template <typename Use>
 void evolve(kernels::TriangleMesh mesh, const DirectionOptions& options, engine::Workers& workers,
@@ -55,7 +55,7 @@ void evolve(kernels::TriangleMesh mesh, const DirectionOptions& options, engine:
                                  {.curved = curved,
                                   .coordinates = coordinates_of(options.coordinates),
                                   .rescale = jobs::Rescale::kEdges,
-                                  .remesh = false},  // vertices must stay what they are
+                                  .remesh = false},  // vertices must not be removed or inserted
                                  {workers, observer, {}});
   const std::set<int> wanted(options.iterations.begin(), options.iterations.end());
   const int last = *wanted.rbegin();
@@ -88,7 +88,8 @@ std::vector<Measurement> measure(kernels::TriangleMesh mesh, const DirectionOpti
   return result;
 }
 
-/// How the errors of a vertex' directions are summed up: a row of the CSV, a plot.
+/// Says how the errors of the directions of a vertex are summed up. Each way has rows in the CSV
+/// and a plot.
 struct OverDirections {
   const char* name;
   const char* title;

@@ -25,8 +25,9 @@ double shortest_edge(const kernels::LevelMesh& mesh) {
   return std::sqrt(shortest2);
 }
 
-/// Mean distance of each row from the nearest row of the earlier level that comes from the same
-/// vertex of level 0. Both levels' rows ascend by that vertex; those of inserted vertices are last.
+/// Returns the mean distance of each row from the nearest row of the earlier level that comes from
+/// the same vertex of level 0. Both levels' rows ascend by that vertex; those of inserted vertices
+/// are last.
 double mean_distance(const kernels::LevelMesh& mesh,
                      const std::vector<std::int32_t>& earlier_source,
                      const std::vector<Eigen::Vector3f>& earlier_points) {

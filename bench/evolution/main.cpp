@@ -48,7 +48,7 @@ struct Options {
   int threads = 0;
 };
 
-/// Seconds of each stretch since they were last taken. Stretches come from the thread that drives
+/// Adds up the time of each stretch until it is taken. Stretches come from the thread that drives
 /// the computation.
 class Clock : public engine::Observer {
  public:
@@ -80,7 +80,7 @@ jobs::EvolutionOptions evolution_options(const Options& options) {
           .remesh = !options.no_remesh};
 }
 
-/// The name and the mesh of one scan, read or made.
+/// Holds the name and the mesh of one scan, which was read or made.
 struct Source {
   std::string name;
   std::function<kernels::TriangleMesh()> mesh;
@@ -104,7 +104,7 @@ std::vector<Source> sources(const Options& options) {
   return result;
 }
 
-/// As the surface job does it, but for writing.
+/// Evolves a scan as a surface job does, but writes nothing.
 ScanReport measure(const Source& source, const Options& options, engine::Workers& workers) {
   Clock clock;
   const engine::RunContext context{workers, clock, {}};
@@ -195,7 +195,7 @@ void add_sources(CLI::App& app, Options& options) {
       ->check(CLI::Range(0.0, 10.0));
 }
 
-/// Those of `semigeo run` that change what levels become.
+/// Adds the options of `semigeo run` that change levels.
 void add_evolution(CLI::App& app, Options& options) {
   app.add_option("--fill-holes", options.preparation.fill_holes, "Of at most so many edges")
       ->check(CLI::Range(0, 1000000));

@@ -10,7 +10,7 @@
 namespace semigeo::evolution {
 namespace {
 
-/// Seconds before level 0 under the names that they have in tables.
+/// Describes a time before level 0 and its name in tables.
 struct Stretch {
   const char* name;
   Seconds ScanReport::*seconds;

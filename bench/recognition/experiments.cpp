@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::array kFalsePositiveKinds = {"A", "B", "C", "D", "E"};
 
-/// One library and what looks things up in it.
+/// Holds a library and the recogniser that uses it.
 struct Opened {
   Opened(const ModelLibraries& libraries, const std::vector<std::size_t>& left_out,
          const Method& method)
@@ -87,7 +87,7 @@ class Experiments {
   }
 
   ModelSpan models_;
-  std::size_t known_;  ///< models of the library; the rest is only for the range scan
+  std::size_t known_;  ///< Number of models of the library. Others are for the range scan.
   const ModelLibraries& libraries_;
   const Method& method_;
   const ExperimentOptions& options_;

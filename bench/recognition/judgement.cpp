@@ -13,7 +13,7 @@
 namespace semigeo::recognition {
 namespace {
 
-/// Of a model, for the mean distance of its surface.
+/// The number of vertices of a model from which the mean distance of its surface is computed.
 constexpr std::size_t kVertices = 500;
 
 }  // namespace

@@ -49,7 +49,7 @@ std::vector<std::string> all_kinds() {
   return kinds;
 }
 
-/// A few objects, seconds.
+/// Sets options for a short run: few objects, and some seconds.
 void shorten(Options& options) {
   options.models.most_models = 4;
   options.models.most_vertices = options.experiments.model_vertices = 1500;

@@ -19,7 +19,7 @@ ModelLibraries::ModelLibraries(ModelSpan models, const jobs::RecognitionParamete
     kernels::RecognitionModel model =
         jobs::recognition_model(models[i]->built, parameters, context);
     model.name = models[i]->name;
-    // There is no dataset that it could be the digest of.
+    // There is no dataset, so this is no real digest.
     char digest[33];
     std::snprintf(digest, sizeof digest, "%032zx", i);
     model.digest = digest;

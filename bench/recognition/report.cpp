@@ -25,14 +25,14 @@ std::vector<std::string> kinds_of(std::span<const Outcome> outcomes) {
   return kinds;
 }
 
-/// Numbers over the scenes of a kind.
+/// Collects numbers over the scenes of a kind.
 struct Summary {
   int scenes = 0, named = 0, posed = 0, reported = 0;
   int objects = 0, objects_reported = 0;
   int false_scenes = 0, false_objects = 0;
-  std::vector<double> right, wrong;                     ///< scores in the ranking
-  std::vector<double> degrees, centre;                  ///< of right poses
-  std::vector<double> scale_space, search, total, cpu;  ///< seconds
+  std::vector<double> right, wrong;                     ///< Scores in the ranking.
+  std::vector<double> degrees, centre;                  ///< Errors of right poses.
+  std::vector<double> scale_space, search, total, cpu;  ///< In seconds.
 };
 
 Summary summary(std::span<const Outcome> outcomes, const std::string& kind) {
@@ -69,7 +69,7 @@ std::string number(double value, int decimals) {
   return text;
 }
 
-/// Quantiles in one cell.
+/// Returns quantiles as the text of one cell.
 std::string spread(std::vector<double>& values, std::array<double, 3> shares) {
   std::string text;
   for (const double share : shares)

@@ -44,13 +44,13 @@ constexpr std::array kThesisPlacements = {
     ThesisPlacement{"rabbit", 0.1, 6, 6, 6},        ThesisPlacement{"torus", 1.1, 74, 304, 132},
 };
 
-/// What chance decides; each has numbers of its own.
+/// The purposes of random numbers. Each has its own sequence.
 enum class Chance : std::uint32_t { kOthers, kPlacement, kChange, kSimilarity };
 
-/// Factor between the sizes of objects in one scene, either way.
+/// The largest factor by which an object of a scene is enlarged or shrunk.
 constexpr double kSizeSpread = 1.3;
 
-/// Which models are in the scene, the first one first; copies beside each other.
+/// Returns the models of a scene. `first` comes first, and copies of a model follow one another.
 std::vector<std::size_t> chosen(const SceneKind& kind, std::size_t models, std::size_t first,
                                 bench::Random& random) {
   if (models < static_cast<std::size_t>(kind.objects))
@@ -69,7 +69,8 @@ std::vector<std::size_t> chosen(const SceneKind& kind, std::size_t models, std::
   return result;
 }
 
-/// Of unit size but for the spread, turned at random, its centre at the origin.
+/// Returns a transform that turns a model at random, gives it nearly unit size and puts its centre
+/// at the origin.
 Similarity comparable(const BenchModel& model, bench::Random& random) {
   Similarity result;
   result.rotation = bench::random_rotation(random);
@@ -79,7 +80,7 @@ Similarity comparable(const BenchModel& model, bench::Random& random) {
   return result;
 }
 
-/// `second` after `first`.
+/// Returns the transform that applies `first` and then `second`.
 Similarity after(const Similarity& second, const Similarity& first) {
   Similarity result;
   result.scale = second.scale * first.scale;

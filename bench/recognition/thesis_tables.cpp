@@ -25,7 +25,7 @@ constexpr SceneKind kComplete = {.name = "complete", .says = "", .vertices_left 
 constexpr SceneKind kPartial = {
     .name = "partial", .says = "", .vertices_left = 0.6, .removed = 0.6};
 
-/// A scene of one object where 6.1 puts it.
+/// Returns a scene of one object, placed as in table 6.1.
 Scene placed(const SceneKind& kind, const BenchModel& model, std::size_t index,
              const ThesisPlacement& placement, std::uint64_t seed) {
   Scene scene{.kind = kind.name,
@@ -37,7 +37,7 @@ Scene placed(const SceneKind& kind, const BenchModel& model, std::size_t index,
   return scene;
 }
 
-/// Looks at scenes with both methods.
+/// Recognises scenes with both methods.
 class Looker {
  public:
   Looker(ModelSpan models, const io::HashLibrary& library,
@@ -77,7 +77,7 @@ void print_row_head(const std::string& text) {
   std::printf("%-16.16s", text.c_str());
 }
 
-/// One number of every model in every scene; nothing is a dash.
+/// Prints one number of every model in every scene. A number that is missing is a dash.
 void print_matrix(const std::string& title, const std::vector<std::string>& models,
                   const ThesisExperiment& experiment,
                   const std::function<double(const ThesisScore&)>& value) {
@@ -99,7 +99,7 @@ void print_matrix(const std::string& title, const std::vector<std::string>& mode
   }
 }
 
-/// The model with the largest value.
+/// Returns the model with the largest value.
 std::string best(const std::vector<std::string>& models, const std::vector<ThesisScore>& scores,
                  const std::function<double(const ThesisScore&)>& value) {
   const auto at = std::ranges::max_element(scores, {}, value);

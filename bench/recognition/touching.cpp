@@ -18,18 +18,19 @@ namespace {
 using kernels::TriangleMesh;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// What is left between two objects, of their size: rounding must not let them cross.
+/// The gap between two objects, as a share of the larger one. It keeps rounding from letting them
+/// cross.
 constexpr double kGap = 1e-6;
 constexpr int kAttempts = 100;
 
-/// A mesh seen along a direction: x and y across it, z against it.
+/// Returns a mesh as it is seen along a direction: x and y across it, z against it.
 TriangleMesh seen_along(const TriangleMesh& mesh, const Eigen::Matrix3d& frame) {
   TriangleMesh result = mesh;
   for (Eigen::Vector3d& p : result.points) p = frame * p;
   return result;
 }
 
-/// Triangles by where they lie across the direction.
+/// Finds triangles by their places across the direction.
 class Grid {
  public:
   explicit Grid(const TriangleMesh& mesh) : mesh_(mesh), box_(kernels::bounding_box(mesh.points)) {
@@ -44,7 +45,7 @@ class Grid {
     }
   }
 
-  /// Calls `visit` with the height of every triangle above or below a point.
+  /// Calls `visit` with the height of each triangle that lies above or below a point.
   template <typename Visit>
   void heights(const Eigen::Vector3d& p, const Visit& visit) const {
     for (int axis = 0; axis < 2; ++axis)
@@ -66,7 +67,7 @@ class Grid {
     const double share = extent > 0 ? (p[axis] - box_.min()[axis]) / extent : 0.0;
     return std::clamp(static_cast<int>(share * side_), 0, side_ - 1);
   }
-  /// Twice the signed area across the direction.
+  /// Returns twice the signed area across the direction.
   static double cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                       const Eigen::Vector3d& c) {
     return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
@@ -78,8 +79,8 @@ class Grid {
   std::vector<std::vector<std::int32_t>> cells_;
 };
 
-/// The smallest way from a vertex of the upper mesh down to the lower, and from its faces to the
-/// lower one's vertices.
+/// Returns the smallest distance downwards from a vertex of the upper mesh to a face of the lower
+/// one, or from a face of the upper mesh to a vertex of the lower one.
 double way_down(const TriangleMesh& upper, const TriangleMesh& lower) {
   double way = kInfinity;
   const Grid below(lower);

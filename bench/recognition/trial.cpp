@@ -10,7 +10,7 @@
 namespace semigeo::recognition {
 namespace {
 
-/// How long one call takes.
+/// Calls `body`, measures its time and returns its result.
 template <typename Body>
 auto timed(Seconds& seconds, const Body& body) {
   class Clock : public engine::Observer {
@@ -25,7 +25,7 @@ auto timed(Seconds& seconds, const Body& body) {
   return body();
 }
 
-/// Different models of a scene.
+/// Returns the different models of a scene.
 std::set<std::string> models_of(const std::vector<ObjectOutcome>& objects) {
   std::set<std::string> result;
   for (const ObjectOutcome& object : objects) result.insert(object.model);

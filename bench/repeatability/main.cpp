@@ -29,9 +29,11 @@ constexpr int kDone = 0;
 constexpr int kFailed = 1;
 constexpr int kUsage = 2;
 
-/// Scales of a level from a cut within which features do not count: half a patch is four steps.
+/// Features nearer to a cut than this number of scales of their level do not count. Half a patch is
+/// four steps.
 constexpr double kReach = 4;
-/// A finer mesh needs more levels to reach the same scale, but not that many more.
+/// A changed mesh gets at most this number of times the levels of the original. A finer mesh needs
+/// more levels to reach the same scale.
 constexpr int kMaxLevelFactor = 8;
 
 struct Options {
@@ -54,7 +56,7 @@ bool is_closed(const kernels::Surface& surface) {
   return true;
 }
 
-/// What all cases of one mesh share.
+/// Holds what all cases of one mesh share.
 struct Original {
   std::string name;
   kernels::Surface surface;
@@ -62,7 +64,7 @@ struct Original {
   std::vector<ScaleLevel> levels;
 };
 
-/// The rows of one changed mesh.
+/// Returns the rows of one changed mesh.
 void compare(const Original& original, const Case& change, const ChangedMesh& changed,
              std::span<const ScaleLevel> levels, const Options& options, std::vector<Row>& rows) {
   for (std::size_t k = 0; k < original.levels.size(); ++k) {
@@ -93,13 +95,13 @@ void compare(const Original& original, const Case& change, const ChangedMesh& ch
   }
 }
 
-/// Whether the mesh was used.
+/// Examines one mesh. Returns whether it was used.
 bool measure(const fs::path& path, const Options& options, const engine::RunContext& context,
              std::vector<Row>& rows) {
   kernels::BuiltSurface built = kernels::build_surface(io::read_scan(path).mesh);
   if (built.surface.face_count() == 0) throw std::runtime_error("no face is left after repair");
   if (options.closed && !is_closed(built.surface)) return false;
-  // Everything is relative to the surface's own origin from here on.
+  // From here on all points are relative to the origin of the surface.
   built.origin.setZero();
   Original original{.name = path.filename().string(),
                     .surface = built.surface,

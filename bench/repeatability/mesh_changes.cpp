@@ -29,14 +29,14 @@ constexpr std::array kCases = {
     Case{.name = "decimated+cut", .digitising = Digitising::kDecimated, .cut = true},
 };
 
-/// What chance decides; each has numbers of its own.
+/// The purposes of random numbers. Each has its own sequence.
 enum class Chance : std::uint32_t { kCut, kNoise, kSimilarity };
 
 bench::Random random(std::uint64_t seed, Chance chance, std::string_view name) {
   return bench::random(seed, static_cast<std::uint32_t>(chance), name);
 }
 
-/// A plane through the median of the vertices, coordinate by coordinate.
+/// Returns a plane through the point whose coordinates are the medians of those of the vertices.
 Eigen::Hyperplane<double, 3> random_cut(const kernels::Surface& original, std::uint64_t seed) {
   Eigen::Vector3d middle;
   for (int c = 0; c < 3; ++c) {
@@ -49,7 +49,7 @@ Eigen::Hyperplane<double, 3> random_cut(const kernels::Surface& original, std::u
   return {bench::normal_vector(numbers).normalized(), middle};
 }
 
-/// Drops every face that reaches the negative side; vertices without faces stay.
+/// Drops each face that reaches the negative side. Vertices without faces are kept.
 void cut(TriangleMesh& mesh, const Eigen::Hyperplane<double, 3>& plane) {
   std::erase_if(mesh.triangles, [&](const std::array<std::int32_t, 3>& t) {
     return std::ranges::any_of(

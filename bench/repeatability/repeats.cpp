@@ -11,7 +11,7 @@ namespace semigeo::repeatability {
 namespace {
 
 struct Found {
-  double distance;  ///< to the nearest feature of the same sign
+  double distance;  ///< Distance to the nearest feature of the same sign.
   float prominence;
 };
 
@@ -32,13 +32,14 @@ double nearest_distance(const PlacedFeature& feature, std::span<const PlacedFeat
   return std::sqrt(nearest2);
 }
 
-/// The tolerance cuts discs out of the surface; each random point misses one with that share.
+/// Returns the probability that one of `points` random points lies within the tolerance of a
+/// feature.
 double chance_of(std::int64_t points, const RepeatOptions& options) {
   const double disc = std::numbers::pi * options.tolerance * options.tolerance;
   return 1 - std::pow(1 - std::min(1.0, disc / options.area), static_cast<double>(points));
 }
 
-/// The more prominent ones; of one it is that.
+/// Returns the more prominent half, or the only one.
 std::vector<Found> prominent_half(std::vector<Found> found) {
   const auto middle = found.begin() + static_cast<std::ptrdiff_t>(found.size() / 2);
   std::nth_element(found.begin(), middle, found.end(),

@@ -14,7 +14,7 @@ namespace {
 
 using kernels::FeatureKind;
 
-/// A mesh with fewer features has no say in a median: one feature more or less is a fifth of them.
+/// Meshes with fewer features are left out of medians, because one feature is too large a share.
 constexpr std::int64_t kFewest = 5;
 
 constexpr const char* kCsvHeader =
@@ -26,7 +26,7 @@ const char* name_of(FeatureKind kind) {
   return kernels::kFeatureKindNames[static_cast<int>(kind)];
 }
 
-/// Values in the order of their first appearance.
+/// Returns the different values in the order of their first appearance.
 template <typename Value, typename Get>
 std::vector<Value> distinct(std::span<const Row> rows, const Get& get) {
   std::vector<Value> values;
@@ -36,7 +36,7 @@ std::vector<Value> distinct(std::span<const Row> rows, const Get& get) {
   return values;
 }
 
-/// What identifies rows of different meshes as alike.
+/// Names the rows of different meshes that belong together.
 struct Key {
   FeatureKind kind = FeatureKind::kGaussian;
   int level = 0;
@@ -47,11 +47,11 @@ Key key_of(const Row& row) {
   return {row.kind, row.level, row.radius};
 }
 
-/// Over the meshes.
+/// Holds medians over the meshes.
 struct Summary {
   Key key;
-  std::int64_t features = 0;  ///< of all meshes together
-  std::int64_t meshes = 0;    ///< with enough features for the medians
+  std::int64_t features = 0;  ///< Number of features of all meshes together.
+  std::int64_t meshes = 0;    ///< Number of meshes with enough features for the medians.
   Repeats median;
 };
 
@@ -99,8 +99,9 @@ void print_case(std::span<const Row> rows, const std::string& change,
     }
 }
 
-/// What returns most often beyond chance, on the mean of these cases, where at least half of the
-/// meshes have enough features; nothing if there is none.
+/// Returns the kind, level and radius whose features reappear most often beyond chance, by the mean
+/// of these cases. At least half of the meshes must have enough features; otherwise there is no
+/// result.
 std::optional<Key> best_key(std::span<const Row> rows, const std::vector<std::string>& changes) {
   const auto meshes = std::ssize(distinct<std::string>(rows, &Row::mesh));
   std::optional<Key> best;

@@ -14,7 +14,7 @@ namespace {
 using kernels::Feature;
 using kernels::FeatureKind;
 
-/// What recognition takes for a feature, in curvature times scale.
+// The least curvature times scale of a feature that recognition uses.
 constexpr float kMinScaleFreeGaussian = 0.1f;  // squared: 0.01
 constexpr float kMinScaleFreeMean = 0.1f;
 

@@ -20,11 +20,11 @@ using Halfedge = EditMesh::HalfedgeHandle;
 using Edge = EditMesh::EdgeHandle;
 
 constexpr int kRounds = 10;
-/// Edges are split above and collapsed below so many times the length that is wanted: halves of the
-/// longest are not collapsed again.
+// Edges are split above and collapsed below these multiples of the wanted length. Halves of a split
+// edge are not collapsed again.
 constexpr double kLongest = 4.0 / 3;
 constexpr double kShortest = 4.0 / 5;
-/// Cosine of how far a face may turn in a collapse or a flip.
+/// The cosine of the greatest angle by which a face may turn in a collapse or a flip.
 constexpr double kMaxTurn = 0.5;
 
 class IsotropicRemesher {
@@ -35,7 +35,7 @@ class IsotropicRemesher {
   kernels::TriangleMesh remeshed(std::int64_t vertices) {
     double area = 0;
     for (const auto f : mesh_.faces()) area += mesh_.calc_sector_area(mesh_.halfedge_handle(f));
-    // Equilateral triangles, two a vertex.
+    // There are two equilateral triangles for each vertex.
     double length = std::sqrt(2 * area / (std::sqrt(3.0) * static_cast<double>(vertices)));
     for (int round = 0; round < kRounds; ++round) {
       split_longer_than(kLongest * length);
@@ -52,8 +52,8 @@ class IsotropicRemesher {
   Eigen::Vector3d point(Vertex v) const { return eigen(mesh_.point(v)); }
   double length(Edge e) const { return mesh_.calc_edge_length(e); }
 
-  /// Longer ones first, about: to split a triangle's short side makes another long one. New edges
-  /// come last, and are looked at as well.
+  /// Splits long edges, longer ones roughly first, because splitting a short side of a triangle
+  /// makes another long edge. New edges come last, and are split as well if they are long.
   void split_longer_than(double longest) {
     double bound = 0;
     for (const auto e : mesh_.edges()) bound = std::max(bound, length(e));
@@ -81,8 +81,8 @@ class IsotropicRemesher {
     }
   }
 
-  /// Whether a vertex may go there without a long edge or a face that turns. Faces with `partner`,
-  /// with which it will be one, do not count: they vanish.
+  /// Returns whether a vertex may move there without making a long edge or turning a face. Faces
+  /// with `partner`, with which it will be merged, are left out, because they vanish.
   bool may_move(Vertex v, Vertex partner, const Eigen::Vector3d& there, double longest) const {
     for (const auto h : mesh_.voh_range(v)) {
       const Vertex a = mesh_.to_vertex_handle(h);
@@ -123,12 +123,13 @@ class IsotropicRemesher {
     }
   }
 
-  /// How far a vertex is from six neighbours, from four on a boundary, with so many more edges.
+  /// Returns how far the number of edges of a vertex is from six, or from four on a boundary, with
+  /// this number of edges more.
   int excess(Vertex v, int more) const {
     return std::abs(static_cast<int>(mesh_.valence(v)) + more - (mesh_.is_boundary(v) ? 4 : 6));
   }
 
-  /// All vertices at once, then each onto the surface.
+  /// Moves all vertices at once, and then each of them onto the surface.
   void relax() {
     std::vector<Eigen::Vector3d> moved(mesh_.n_vertices());
     for (const auto v : mesh_.vertices()) {

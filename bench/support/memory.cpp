@@ -9,7 +9,7 @@
 namespace semigeo::bench {
 namespace {
 
-/// A line of /proc/self/status that counts kB.
+/// Returns the number of bytes in a line of /proc/self/status, which counts kB.
 std::int64_t status_bytes(const std::string& name) {
   std::ifstream status("/proc/self/status");
   for (std::string key; status >> key; status.ignore(1 << 20, '\n')) {
@@ -23,7 +23,7 @@ std::int64_t status_bytes(const std::string& name) {
 
 PeakMemory::PeakMemory() {
   malloc_trim(0);
-  std::ofstream("/proc/self/clear_refs") << "5\n";  // VmHWM starts anew
+  std::ofstream("/proc/self/clear_refs") << "5\n";  // starts VmHWM anew
   resident_at_start_ = status_bytes("VmRSS");
 }
 

@@ -11,9 +11,10 @@ namespace {
 
 constexpr double kPanelWidth = 340, kPanelHeight = 260;
 constexpr double kLeft = 58, kRight = 12, kTop = 34, kBottom = 46;
-/// Of the legend at least; and about that of one letter of it.
+// The least width of the legend, and the approximate width of one of its letters.
 constexpr double kLegendWidth = 104, kLetterWidth = 6.5;
-/// Above this ratio of largest to smallest a linear axis would hide the lower curves.
+/// The ratio of the largest to the smallest value above which axes are logarithmic, because a
+/// linear axis would hide the lower curves.
 constexpr double kLogRatio = 20;
 
 std::string number(double value, const char* format = "%.6g") {
@@ -39,7 +40,8 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-/// From dark blue by green to orange: as dark as text needs, also without colours.
+/// Returns the colour of a curve, from dark blue by green to orange. All are dark enough for text,
+/// and their brightness grows.
 std::string colour(std::size_t i, std::size_t count) {
   static constexpr std::array<std::array<double, 3>, 4> kAnchors = {
       {{40, 30, 110}, {20, 120, 160}, {70, 160, 70}, {230, 120, 20}}};
@@ -67,8 +69,8 @@ std::string line(double x1, double y1, double x2, double y2, const std::string& 
 
 /// Maps values to pixels, and knows its ticks.
 struct Axis {
-  double low = 0, high = 1;  ///< values, or their logarithms
-  double from = 0, to = 1;   ///< pixels
+  double low = 0, high = 1;  ///< Values, or their logarithms.
+  double from = 0, to = 1;   ///< In pixels.
   bool logarithmic = false;
   std::vector<double> ticks;
 
@@ -78,7 +80,7 @@ struct Axis {
   }
 };
 
-/// Round numbers: 1, 2 or 5 times a power of ten apart, three to seven of them.
+/// Returns three to seven round numbers whose distance is 1, 2 or 5 times a power of ten.
 Axis linear_axis(double low, double high, double from, double to) {
   if (!(high > low)) high = low + 1;
   const double power = std::pow(10, std::floor(std::log10((high - low) / 3)));
@@ -92,7 +94,8 @@ Axis linear_axis(double low, double high, double from, double to) {
   return axis;
 }
 
-/// Ticks at 1, 2, 5 times the powers of ten, or at these alone where that would be too many.
+/// Returns ticks at 1, 2 and 5 times the powers of ten, or at the powers alone if there would be
+/// too many.
 Axis log_axis(double low, double high, double from, double to) {
   Axis axis{std::log10(low) - 0.05, std::log10(high) + 0.05, from, to, true, {}};
   const bool sparse = axis.high - axis.low > 3;
@@ -109,7 +112,7 @@ bool drawable(const std::pair<double, double>& p) {
   return std::isfinite(p.first) && std::isfinite(p.second);
 }
 
-/// Of all drawable points; an empty plot has none.
+/// Holds the range of all points that can be drawn. An empty plot has none.
 struct Extent {
   double x_low = std::numeric_limits<double>::infinity();
   double x_high = -x_low;
