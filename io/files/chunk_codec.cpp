@@ -126,9 +126,9 @@ std::vector<std::byte> with_checksum(std::span<const std::byte> bytes) {
 
 using Compressor = std::unique_ptr<libdeflate_compressor, FreeCompressor>;
 
-// Returns how many bytes at the front of shuffled rows are noise. The low bytes of coordinates, and of
-// the vertices of triangles, are noise, and shuffling puts them in front, one plane after the other.
-// A sample is packed to find out. It must become shorter by a thirty-second part.
+// Returns how many bytes at the front of shuffled rows are noise. The low bytes of coordinates, and
+// of the vertices of triangles, are noise, and shuffling puts them in front, one plane after the
+// other. A sample is packed to find out. It must become shorter by a thirty-second part.
 std::size_t noise_in_front(libdeflate_compressor* compressor, std::span<const std::byte> shuffled,
                            std::size_t element_size) {
   constexpr std::size_t kSample = 4096;
