@@ -23,6 +23,7 @@ void add_recognise(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
+void add_bench(CLI::App& app, int& exit_code);
 
 /// Adds a hidden command that prints docs/options.md from the options that the other commands have.
 void add_options_page(CLI::App& app);

@@ -60,7 +60,8 @@ int run(int argc, char** argv) {
       "  semigeo info archive                    what is in it\n"
       "  semigeo check archive                   is every byte as it was written?\n"
       "  semigeo recognise scene.ply --library archive   which models are in it, and where\n"
-      "  semigeo export archive/scans/x.ply.vtkhdf --level 4 --output smooth.ply\n");
+      "  semigeo export archive/scans/x.ply.vtkhdf --level 4 --output smooth.ply\n"
+      "  semigeo bench                           how fast is this machine?\n");
   app.set_version_flag("--version", version);
   app.set_config("--config", "", "Read options from a TOML file like archive/semigeo.toml");
   app.allow_config_extras(CLI::config_extras_mode::error);
@@ -74,6 +75,7 @@ int run(int argc, char** argv) {
   add_info(app, exit_code);
   add_check(app, exit_code);
   add_export(app, exit_code);
+  add_bench(app, exit_code);
   add_job(app, exit_code);
   add_options_page(app);
   try {

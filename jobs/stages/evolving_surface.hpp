@@ -112,12 +112,15 @@ class EvolvingSurface {
   /// Returns the (N) normals of the smoothed surface, unit or zero. Call it between `evaluate` and
   /// `move`.
   const std::vector<Eigen::Vector3f>& smoothed_normals() const { return next_normals_; }
+  /// Returns the current level as patches sample it, in internal units. It is a view of this
+  /// object.
+  kernels::SampledSurface sampled() const;
+  /// Returns how the patches of the current level are laid, in internal units.
+  kernels::PatchLayout layout() const;
   /// Returns whether the surface has collapsed. Then the mesh only marks its place.
   bool vanished() const { return vanished_; }
 
  private:
-  kernels::SampledSurface sampled() const;
-  kernels::PatchLayout layout() const;
   void set_step(double step);
   void prepare_faces();
   void angle_weighted_normals();

@@ -29,7 +29,8 @@ set(rules
   "jobs/run: engine kernels io jobs/archive jobs/plan"
   "jobs/slurm: engine kernels io jobs/archive jobs/plan jobs/run"
   "jobs/kinds: engine kernels io jobs/archive jobs/plan jobs/stages"
-  "jobs/cli: engine kernels io jobs/archive jobs/plan jobs/run jobs/slurm jobs/kinds jobs/stages")
+  "jobs/bench: engine kernels io jobs/archive jobs/plan jobs/run jobs/stages"
+  "jobs/cli: engine kernels io jobs/archive jobs/plan jobs/run jobs/slurm jobs/kinds jobs/stages jobs/bench")
 
 # Single headers that a layer may include besides.
 # Who owns a file descriptor is decided once, for engine, io and jobs.

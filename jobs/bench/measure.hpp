@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "jobs/bench/figure.hpp"
+#include "jobs/bench/machine.hpp"
+#include "jobs/bench/schedule.hpp"
+
+namespace semigeo::jobs {
+
+/// How cases are measured.
+struct MeasureSettings {
+  RepetitionLimits repetitions;  ///< `seconds` counts from the first preparation.
+  double least_seconds = 0.03;   ///< A repetition of a fast case has calls for so much time.
+  int machine_cores = 1;
+  /// Is told before each repetition how many are done, how many there are (0: not known yet), and
+  /// which comes. If it returns false, nothing more is measured.
+  std::function<bool(int done, int total, const std::string& name)> progress = {};
+};
+
+/// What was measured.
+struct Measurement {
+  std::vector<Figure> figures;  ///< figures[i] belongs to case i.
+  MachineLoad load;
+  bool complete = true;  ///< If false, somebody asked to stop.
+};
+
+/// Measures cases. Each is called to warm up, which is not counted, then repetition by repetition
+/// in the order of `interleaved`. Bounds are found at the end. Throws what a case throws.
+Measurement measure(std::span<const BenchCase> cases, const MeasureSettings& settings);
+
+}  // namespace semigeo::jobs
