@@ -3,11 +3,11 @@
 namespace semigeo::jobs {
 namespace {
 
-constexpr double kBusy = 0.8;            // share of the cores that counts as all of them
-constexpr double kMuchMemory = 0.5;      // share of what memory can move that bounds
-constexpr double kLittleMemory = 0.2;    // share that does not
-constexpr double kMostlyLocked = 0.5;    // share of the time that bounds
-constexpr double kNearlyOneCore = 1.25;  // cores busy when one does nearly everything
+constexpr double kBusy = 0.8;          // share of the cores that counts as all of them
+constexpr double kMuchMemory = 0.5;    // share of what memory can move that bounds
+constexpr double kLittleMemory = 0.2;  // share that does not
+constexpr double kMostlyLocked = 0.5;  // share of the time that bounds
+constexpr double kMostlyAlone = 0.5;   // share of the time with one core busy that bounds
 
 Bound of_one_thread(const BoundEvidence& evidence) {
   if (evidence.busy < kBusy) return evidence.used_disk ? Bound::kDisk : Bound::kUnclear;
@@ -21,8 +21,11 @@ Bound of_many_threads(const BoundEvidence& evidence) {
   if (evidence.memory >= kMuchMemory) return Bound::kMemory;
   if (evidence.busy >= kBusy * evidence.threads) return Bound::kUnclear;
   if (evidence.locked >= kMostlyLocked) return Bound::kLock;
+  if (evidence.alone_on_disk) return Bound::kDisk;
   if (evidence.busy < kBusy) return evidence.used_disk ? Bound::kDisk : Bound::kUnclear;
-  return evidence.busy < kNearlyOneCore ? Bound::kOneCore : Bound::kUnclear;
+  // The share of the time in which one core was busy, if all were for the rest of it.
+  const double alone = (evidence.threads - evidence.busy) / (evidence.threads - 1);
+  return alone >= kMostlyAlone ? Bound::kOneCore : Bound::kUnclear;
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ const NamedRate* find(std::span<const NamedRate> rates, const std::string& name)
 }  // namespace
 
 const char* ComparedRate::verdict() const {
-  if (!is_beyond_spread()) return "same";
+  if (!is_beyond_spread()) return "within spread";
   if (now.median >= before.median) return "faster";
   return is_disturbed(kAsMuch) ? "disturbed" : "slower";
 }

@@ -37,7 +37,7 @@ struct ComparedRate {
   bool is_disturbed(double bound) const { return disturbed && cpu_ratio >= bound; }
   /// Returns whether the figure fell: it is below the bound, and not because of other processes.
   bool fell_below(double bound) const { return is_below(bound) && !is_disturbed(bound); }
-  /// Returns "same" if the difference is within the spread, "faster", "slower", or "disturbed" if
+  /// Returns "within spread" if the ranges overlap, otherwise "faster", "slower", or "disturbed" if
   /// it is slower, but takes as much CPU time as before.
   const char* verdict() const;
 };

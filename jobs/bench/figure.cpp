@@ -25,9 +25,12 @@ BoundEvidence evidence_of(const Figure& figure, const std::vector<Figure>& figur
       memory != nullptr && memory->rate().median > 0)
     evidence.memory =
         figure.total(&BenchWork::memory_bytes) / seconds / (1e9 * memory->rate().median);
-  if (const Figure* alone = find(figures, figure.name, 1);
-      figure.threads > 1 && alone != nullptr && alone->rate().median > 0)
+  const Figure* alone = figure.threads > 1 ? find(figures, figure.name, 1) : nullptr;
+  if (alone != nullptr && alone->rate().median > 0) {
     evidence.speedup = figure.rate().median / alone->rate().median;
+    const BoundEvidence of_one = evidence_of(*alone, figures, machine_cores);
+    evidence.alone_on_disk = bound_of(of_one) == Bound::kDisk;
+  }
   return evidence;
 }
 

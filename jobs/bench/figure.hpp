@@ -15,7 +15,7 @@ namespace semigeo::jobs {
 struct BenchWork {
   double amount = 0;          ///< In the unit of the case, without "/s".
   double vertex_levels = 0;   ///< Vertices times levels; 0 if the case has no such number.
-  double memory_bytes = 0;    ///< Bytes that memory must move at least; 0 if nobody knows.
+  double memory_bytes = 0;    ///< Bytes that memory must move at least; 0 if unknown.
   double locked_seconds = 0;  ///< Time in parts that only one thread at a time may do.
 };
 
@@ -24,7 +24,7 @@ struct BenchCase {
   std::string name;  ///< Name without the threads, as "level/scan".
   std::string unit;  ///< Unit of the rate, as "scans/s".
   int threads = 1;
-  /// Does the work once and is timed.
+  /// Does the work once and is timed. It may keep the workers for its next call.
   std::function<BenchWork(engine::Workers&)> run;
   /// Makes ready for the next call and is not timed. It may be empty.
   std::function<void(engine::Workers&)> prepare = {};
@@ -38,7 +38,7 @@ struct BenchRepetition {
   double cpu_seconds = 0;  ///< CPU time of the process and of its children.
   double disk_bytes = 0;   ///< Bytes read from disk, or handed over to be written to it.
   double other_cores = 0;  ///< Cores that other processes used meanwhile, on average.
-  /// Seconds in which threads of this process waited for a core; nothing if nobody knows.
+  /// Seconds in which threads of this process waited for a core; nothing if unknown.
   std::optional<double> queued_seconds = 0;
   BenchWork work;
 
@@ -62,7 +62,7 @@ struct Figure {
   /// Returns the median of the amount for each second of CPU time, 0 if it took none.
   double cpu_rate() const;
   /// Returns the cores that it wanted while other processes had them, on average: by the time that
-  /// its threads waited for a core or, if nobody knows that, by what others used of all cores.
+  /// its threads waited for a core or, if that is unknown, by what others used of all cores.
   double missing_cores(int machine_cores) const;
   /// Returns whether these are more than a tenth of its threads.
   bool was_disturbed(int machine_cores) const {

@@ -47,6 +47,20 @@ BenchWork triad(Triad& arrays, engine::Workers& workers) {
   return {.amount = 1e-9 * bytes, .memory_bytes = bytes};
 }
 
+/// Returns a case that writes a file of so many bytes and forces it to the disk.
+BenchCase file_case(const char* name, const char* unit, const BenchInputsPointer& inputs,
+                    std::int64_t bytes, double amount) {
+  const auto content = std::make_shared<std::string>();
+  return {
+      .name = name,
+      .unit = unit,
+      .run = [=](engine::Workers&) -> BenchWork {
+        io::write_file_atomically(inputs->folder() / "file", *content);
+        return {.amount = amount};
+      },
+      .prepare = [=](engine::Workers&) { content->resize(static_cast<std::size_t>(bytes), 'x'); }};
+}
+
 }  // namespace
 
 void add_machine_cases(std::vector<BenchCase>& cases, const BenchInputsPointer& inputs,
@@ -65,21 +79,9 @@ void add_machine_cases(std::vector<BenchCase>& cases, const BenchInputsPointer& 
                            if (!*arrays)
                              *arrays = std::make_unique<Triad>(inputs->sizes().memory_bytes);
                          }});
-  const auto write = [inputs](std::int64_t bytes) {
-    io::write_file_atomically(inputs->folder() / "disk",
-                              std::string(static_cast<std::size_t>(bytes), 'x'));
-  };
-  cases.push_back({.name = "machine/disk",
-                   .unit = "MB/s",
-                   .run = [write, inputs](engine::Workers&) -> BenchWork {
-                     write(inputs->sizes().disk_bytes);
-                     return {.amount = 1e-6 * static_cast<double>(inputs->sizes().disk_bytes)};
-                   }});
-  cases.push_back(
-      {.name = "machine/files", .unit = "files/s", .run = [write](engine::Workers&) -> BenchWork {
-         write(4096);
-         return {.amount = 1};
-       }});
+  cases.push_back(file_case("machine/disk", "MB/s", inputs, inputs->sizes().disk_bytes,
+                            1e-6 * static_cast<double>(inputs->sizes().disk_bytes)));
+  cases.push_back(file_case("machine/files", "files/s", inputs, 4096, 1));
 }
 
 }  // namespace semigeo::jobs

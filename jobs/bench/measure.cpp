@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 #include <memory>
 #include <optional>
 
@@ -89,19 +88,6 @@ BenchRepetition repeat(const BenchCase& bench, engine::Workers& workers, int cal
   return repetition;
 }
 
-/// One set of threads for each number of threads.
-class WorkerSets {
- public:
-  engine::Workers& of(int threads) {
-    std::unique_ptr<engine::Workers>& workers = sets_[threads];
-    if (!workers) workers = std::make_unique<engine::Workers>(threads);
-    return *workers;
-  }
-
- private:
-  std::map<int, std::unique_ptr<engine::Workers>> sets_;
-};
-
 /// What a first call of a case has told: how often it is called in a repetition, and what that
 /// costs with its preparation.
 struct Calibration {
@@ -141,11 +127,17 @@ void summarise(Measurement& measurement, const MachineWatch& watch, int machine_
 
 }  // namespace
 
-Measurement measure(std::span<const BenchCase> cases, const MeasureSettings& settings) {
+engine::Workers& WorkerSets::of(int threads) {
+  std::unique_ptr<engine::Workers>& workers = sets_[threads];
+  if (!workers) workers = std::make_unique<engine::Workers>(threads);
+  return *workers;
+}
+
+Measurement measure(std::span<const BenchCase> cases, WorkerSets& workers,
+                    const MeasureSettings& settings) {
   const MachineWatch watch;
   Measurement measurement;
   measurement.load.load_before = load_average();
-  WorkerSets workers;
   const auto goes_on = [&](std::size_t done, std::size_t total, const std::string& name) {
     if (settings.progress && measurement.complete)
       measurement.complete =

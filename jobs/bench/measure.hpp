@@ -1,6 +1,8 @@
 #pragma once
 
 #include <functional>
+#include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,8 +30,21 @@ struct Measurement {
   bool complete = true;  ///< If false, somebody asked to stop.
 };
 
+/// One set of threads for each number of threads.
+class WorkerSets {
+ public:
+  /// Returns the set of so many threads. It lives as long as this object.
+  engine::Workers& of(int threads);
+
+ private:
+  std::map<int, std::unique_ptr<engine::Workers>> sets_;
+};
+
 /// Measures cases. Each is called to warm up, which is not counted, then repetition by repetition
 /// in the order of `interleaved`. Bounds are found at the end. Throws what a case throws.
-Measurement measure(std::span<const BenchCase> cases, const MeasureSettings& settings);
+///
+/// Cases may keep the workers that they are called with: `workers` must live as long as the cases.
+Measurement measure(std::span<const BenchCase> cases, WorkerSets& workers,
+                    const MeasureSettings& settings);
 
 }  // namespace semigeo::jobs

@@ -9,7 +9,7 @@
 namespace semigeo::jobs {
 namespace {
 
-/// Seconds of all repetitions together, on two cores of which nobody else uses one.
+/// Seconds of all repetitions together, on two free cores.
 constexpr double kSeconds = 45;
 constexpr double kQuickSeconds = 8;
 
@@ -53,22 +53,23 @@ std::vector<std::string> BenchSession::names() const {
   return names;
 }
 
-Measurement BenchSession::measure() const {
+Measurement BenchSession::measure() {
   return measure(cases_, settings_.quick ? kQuickSeconds : kSeconds);
 }
 
-Measurement BenchSession::measure(const std::vector<BenchCase>& cases, double seconds) const {
+Measurement BenchSession::measure(const std::vector<BenchCase>& cases, double seconds) {
   const RepetitionLimits limits = {
       .least = settings_.quick ? 3 : 5, .most = settings_.quick ? 7 : 15, .seconds = seconds};
-  return jobs::measure(cases, {.repetitions = limits,
-                               .least_seconds = settings_.quick ? 0.01 : 0.03,
-                               .machine_cores = settings_.machine_cores,
-                               .progress = settings_.progress});
+  return jobs::measure(cases, workers_,
+                       {.repetitions = limits,
+                        .least_seconds = settings_.quick ? 0.01 : 0.03,
+                        .machine_cores = settings_.machine_cores,
+                        .progress = settings_.progress});
 }
 
 std::vector<ComparedRate> BenchSession::confirm(Measurement& measurement,
                                                 const std::vector<NamedRate>& before,
-                                                double bound) const {
+                                                double bound) {
   const std::vector<ComparedRate> first =
       fallen(compare(before, rates_of(measurement, settings_.machine_cores)), bound);
   const auto is_suspect = [&](const std::string& name) {

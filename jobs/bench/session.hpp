@@ -36,18 +36,20 @@ class BenchSession {
   /// bounds depend on them.
   std::vector<std::string> names() const;
 
-  Measurement measure() const;
+  /// Measures all chosen cases.
+  Measurement measure();
 
   /// Measures figures again that seem to have fallen below the bound, for at most a fifth of the
   /// time, and adds what comes to `measurement`. Returns those that fell again: what was slow for
   /// some seconds only has not fallen.
   std::vector<ComparedRate> confirm(Measurement& measurement, const std::vector<NamedRate>& before,
-                                    double bound) const;
+                                    double bound);
 
  private:
-  Measurement measure(const std::vector<BenchCase>& cases, double seconds) const;
+  Measurement measure(const std::vector<BenchCase>& cases, double seconds);
 
   SessionSettings settings_;
+  WorkerSets workers_;  ///< Before the cases, which keep them.
   std::vector<BenchCase> cases_;
 };
 

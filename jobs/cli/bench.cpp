@@ -56,7 +56,7 @@ class BenchProgress {
   }
 
  private:
-  engine::ChildProcesses children_;  // the drain wakes nobody here
+  engine::ChildProcesses children_;  // there are none: the drain only counts
   Drain drain_{children_};
   bool terminal_ = isatty(STDERR_FILENO) == 1;
 };
@@ -78,7 +78,7 @@ void print(const BenchReport& report, const BenchOptions& options) {
 
 /// Compares with the baseline and says what fell. What seems to have fallen is measured again.
 /// Returns whether something fell.
-bool compare_with_baseline(const BenchSession& session, const BenchOptions& options,
+bool compare_with_baseline(BenchSession& session, const BenchOptions& options,
                            const std::vector<NamedRate>& before, BenchReport& report,
                            std::string& text) {
   std::vector<ComparedRate> fell;
@@ -110,16 +110,16 @@ int bench(const BenchOptions& options) {
   BenchReport report = new_report(options, folder.path());
   BenchProgress progress;
   const int cores = report.machine.usable_cores;
-  const BenchSession session({.quick = options.quick,
-                              .filter = options.filter,
-                              .threads = options.threads == 0 ? cores : options.threads,
-                              .scan = options.scan,
-                              .program = fs::read_symlink("/proc/self/exe"),
-                              .folder = folder.path(),
-                              .machine_cores = report.machine.machine_cores,
-                              .progress = [&](int done, int total, const std::string& name) {
-                                return progress(done, total, name);
-                              }});
+  BenchSession session({.quick = options.quick,
+                        .filter = options.filter,
+                        .threads = options.threads == 0 ? cores : options.threads,
+                        .scan = options.scan,
+                        .program = fs::read_symlink("/proc/self/exe"),
+                        .folder = folder.path(),
+                        .machine_cores = report.machine.machine_cores,
+                        .progress = [&](int done, int total, const std::string& name) {
+                          return progress(done, total, name);
+                        }});
   if (options.list) {
     for (const std::string& name : session.names()) std::printf("%s\n", name.c_str());
     return kAllDone;

@@ -27,7 +27,7 @@ TEST(ComparisonTest, AFigureFellIfItIsBelowTheBoundAndTheRangesLieApart) {
 TEST(ComparisonTest, ADifferenceWithinTheSpreadOfEitherIsNone) {
   const ComparedRate wide_now = compared(between(95, 100, 105), between(60, 80, 96));
   EXPECT_FALSE(wide_now.fell_below(0.9));
-  EXPECT_STREQ(wide_now.verdict(), "same");
+  EXPECT_STREQ(wide_now.verdict(), "within spread");
   EXPECT_FALSE(compared(between(79, 100, 105), between(75, 80, 85)).fell_below(0.9));
 }
 
