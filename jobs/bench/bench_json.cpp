@@ -31,6 +31,7 @@ json context_of(const BenchReport& report) {
           {"workload", kBenchWorkload},
           {"quick", report.quick},
           {"scan", report.scan},
+          {"scan_xxh3", report.scan_xxh3},
           {"processor", machine.processor},
           {"instruction_set", report.instruction_set},
           {"instruction_sets", report.instruction_sets},
@@ -165,7 +166,8 @@ json github_document(const BenchReport& report) {
   return list;
 }
 
-std::vector<NamedRate> read_baseline(const std::filesystem::path& path, bool quick) {
+std::vector<NamedRate> read_baseline(const std::filesystem::path& path,
+                                     const BenchConditions& conditions) {
   const auto refuse = [&](const std::string& problem) {
     throw BaselineError(path.string() + " " + problem +
                         "; make it with `semigeo bench --json` and the same options");
@@ -175,7 +177,8 @@ std::vector<NamedRate> read_baseline(const std::filesystem::path& path, bool qui
     std::ifstream file(path, std::ios::binary);
     const json document = json::parse(file);
     const json& context = document.at("context");
-    if (context.at("workload") != kBenchWorkload || context.at("quick") != quick)
+    if (context.at("workload") != kBenchWorkload || context.at("quick") != conditions.quick ||
+        context.at("scan_xxh3") != conditions.scan_xxh3)
       refuse("was measured on other surfaces");
     std::map<std::string, std::vector<double>> rates, cpu_rates;
     for (const json& entry : document.at("benchmarks")) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "jobs/bench/report.hpp"
@@ -24,8 +25,15 @@ class BaselineError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What rates depend on besides the program and the machine.
+struct BenchConditions {
+  bool quick = false;
+  std::string scan_xxh3 = {};  ///< Digest of the user's scan, or empty.
+};
+
 /// Reads the rates of a file that has a google_document. Throws BaselineError if it has none, or if
-/// it was measured on other surfaces: by another version, or if one of both with --quick.
-std::vector<NamedRate> read_baseline(const std::filesystem::path& path, bool quick);
+/// it was measured on other surfaces or under other conditions.
+std::vector<NamedRate> read_baseline(const std::filesystem::path& path,
+                                     const BenchConditions& conditions);
 
 }  // namespace semigeo::jobs

@@ -18,8 +18,9 @@ struct BenchReport {
   std::string instruction_sets;  ///< What kernels could use on this processor, with commas.
   std::string date;              ///< When it began, in UTC.
   bool quick = false;
-  std::string scan;    ///< The user's scan, or empty.
-  double seconds = 0;  ///< What all of it took.
+  std::string scan_xxh3;  ///< Digest of the user's scan, or empty.
+  std::string scan;       ///< The user's scan, or empty.
+  double seconds = 0;     ///< What all of it took.
   Measurement measurement;
 };
 

@@ -35,6 +35,7 @@ std::vector<int> interleaved(std::span<const double> seconds, const RepetitionLi
       moments.emplace_back((k + 0.5) / counts[i], static_cast<int>(i));
   std::ranges::stable_sort(moments, {}, &std::pair<double, int>::first);
   std::vector<int> order;
+  order.reserve(moments.size());
   for (const auto& [moment, i] : moments) order.push_back(i);
   return order;
 }

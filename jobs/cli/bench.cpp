@@ -12,7 +12,7 @@
 
 #include "engine/child_process.hpp"
 #include "io/files/atomic_file.hpp"
-#include "io/files/error.hpp"
+#include "io/files/file_digest.hpp"
 #include "jobs/archive/utc_time.hpp"
 #include "jobs/bench/bench_json.hpp"
 #include "jobs/bench/session.hpp"
@@ -69,7 +69,7 @@ nlohmann::json document_of(const BenchReport& report, const std::string& format)
 void print(const BenchReport& report, const BenchOptions& options) {
   const bool table = options.format == "table";
   if (!options.output.empty())
-    io::write_file_atomically(options.output, document_of(report, options.format).dump(2) + "\n");
+    io::write_file_atomically(options.output, text_of(document_of(report, options.format)));
   if (table || !options.output.empty())
     std::fputs(table_of(report).c_str(), stdout);
   else
@@ -105,9 +105,12 @@ BenchReport new_report(const BenchOptions& options, const fs::path& folder) {
 int bench(const BenchOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   std::vector<NamedRate> before;
-  if (!options.baseline.empty()) before = read_baseline(options.baseline, options.quick);
+  const std::string scan_xxh3 = options.scan.empty() ? "" : io::xxh3_of_file(options.scan);
+  if (!options.baseline.empty())
+    before = read_baseline(options.baseline, {.quick = options.quick, .scan_xxh3 = scan_xxh3});
   const TemporaryFolder folder;
   BenchReport report = new_report(options, folder.path());
+  report.scan_xxh3 = scan_xxh3;
   BenchProgress progress;
   const int cores = report.machine.usable_cores;
   BenchSession session({.quick = options.quick,

@@ -68,7 +68,7 @@ class BaselineTest : public testing::Test {
   }
   std::string refused(const json& document) {
     try {
-      read_baseline(write(document), false);
+      read_baseline(write(document), {});
     } catch (const BaselineError& error) {
       return error.what();
     }
@@ -79,7 +79,7 @@ class BaselineTest : public testing::Test {
 };
 
 TEST_F(BaselineTest, WhatWasWrittenIsReadBack) {
-  const std::vector<NamedRate> rates = read_baseline(write(google_document(made_report())), false);
+  const std::vector<NamedRate> rates = read_baseline(write(google_document(made_report())), {});
   ASSERT_EQ(rates.size(), 3U);
   EXPECT_EQ(rates[1].name, "job/scan/threads:1");
   EXPECT_EQ(rates[1].unit, "scans/s");
@@ -91,7 +91,8 @@ TEST_F(BaselineTest, WhatWasWrittenIsReadBack) {
 
 TEST_F(BaselineTest, OtherSurfacesAreRefused) {
   json document = google_document(made_report());
-  EXPECT_THROW(read_baseline(write(document), true), BaselineError);
+  EXPECT_THROW(read_baseline(write(document), {.quick = true}), BaselineError);
+  EXPECT_THROW(read_baseline(write(document), {.scan_xxh3 = "a"}), BaselineError);
   document["context"]["workload"] = 0;
   EXPECT_NE(refused(document).find("was measured on other surfaces"), std::string::npos);
 }
@@ -101,8 +102,8 @@ TEST_F(BaselineTest, OtherFilesAreRefused) {
        {json(), json{1, 2}, json{{"context", 1}}, json{{"a", "b"}}, github_document(made_report())})
     EXPECT_NE(refused(document).find("has no rates"), std::string::npos) << document;
   std::ofstream(folder_ / "text") << "no JSON";
-  EXPECT_THROW(read_baseline(folder_ / "text", false), BaselineError);
-  EXPECT_THROW(read_baseline(folder_ / "missing", false), BaselineError);
+  EXPECT_THROW(read_baseline(folder_ / "text", {}), BaselineError);
+  EXPECT_THROW(read_baseline(folder_ / "missing", {}), BaselineError);
 }
 
 }  // namespace
