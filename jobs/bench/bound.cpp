@@ -17,11 +17,13 @@ Bound of_one_thread(const BoundEvidence& evidence) {
 }
 
 Bound of_many_threads(const BoundEvidence& evidence) {
+  const bool all_busy = evidence.busy >= kBusy * evidence.threads;
+  // Files that are written side by side may wait for the disk at the same time.
+  if (evidence.alone_on_disk && !all_busy) return Bound::kDisk;
   if (evidence.speedup >= kBusy * evidence.threads) return Bound::kCores;
   if (evidence.memory >= kMuchMemory) return Bound::kMemory;
-  if (evidence.busy >= kBusy * evidence.threads) return Bound::kUnclear;
+  if (all_busy) return Bound::kUnclear;
   if (evidence.locked >= kMostlyLocked) return Bound::kLock;
-  if (evidence.alone_on_disk) return Bound::kDisk;
   if (evidence.busy < kBusy) return evidence.used_disk ? Bound::kDisk : Bound::kUnclear;
   // The share of the time in which one core was busy, if all were for the rest of it.
   const double alone = (evidence.threads - evidence.busy) / (evidence.threads - 1);

@@ -28,7 +28,7 @@ TEST(BoundTest, IdleThreadsWaitForALockOrHaveNothingToDo) {
   EXPECT_EQ(bound_of({.threads = 4, .busy = 1.02, .speedup = 1}), Bound::kOneCore);
   EXPECT_EQ(bound_of({.threads = 4, .busy = 2.5, .speedup = 2.4}), Bound::kOneCore);
   EXPECT_EQ(bound_of({.threads = 4, .busy = 2.8, .speedup = 2.7}), Bound::kUnclear);
-  EXPECT_EQ(bound_of({.threads = 2, .busy = 1.1, .speedup = 1.5, .alone_on_disk = true}),
+  EXPECT_EQ(bound_of({.threads = 2, .busy = 1.1, .speedup = 1.9, .alone_on_disk = true}),
             Bound::kDisk);
   EXPECT_EQ(bound_of({.threads = 4, .busy = 0.2, .speedup = 1, .used_disk = true}), Bound::kDisk);
 }
