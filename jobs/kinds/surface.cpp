@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// It is raised whenever the same scan and parameters give other bytes.
-static constexpr const char* kVersion = "surface 11";
+static constexpr const char* kVersion = "surface 12";
 
 /// Names every number and word of a result, for writing and for reading.
 template <typename Visit>
@@ -31,10 +31,12 @@ static void each_field(SurfaceJobResult& r, const Visit& visit) {
   visit("levels", r.levels);
   visit("vanished", r.vanished);
   visit("welded_vertices", r.repairs.welded_vertices);
+  visit("gap_vertices", r.repairs.gap_vertices);
   visit("degenerate_faces", r.repairs.degenerate_faces);
   visit("duplicate_faces", r.repairs.duplicate_faces);
   visit("flipped_faces", r.repairs.flipped_faces);
-  visit("nonmanifold_faces", r.repairs.nonmanifold_faces);
+  visit("nonmanifold_edges", r.repairs.nonmanifold_edges);
+  visit("turned_parts", r.repairs.turned_parts);
   visit("split_vertices", r.repairs.split_vertices);
   visit("isolated_vertices", r.repairs.isolated_vertices);
   visit("holes_loops", r.preparation.holes.loops);

@@ -33,9 +33,11 @@ nlohmann::json json_of(const kernels::SurfaceRepairs& repairs) {
   return {{"degenerate_faces", repairs.degenerate_faces},
           {"duplicate_faces", repairs.duplicate_faces},
           {"flipped_faces", repairs.flipped_faces},
+          {"gap_vertices", repairs.gap_vertices},
           {"isolated_vertices", repairs.isolated_vertices},
-          {"nonmanifold_faces", repairs.nonmanifold_faces},
+          {"nonmanifold_edges", repairs.nonmanifold_edges},
           {"split_vertices", repairs.split_vertices},
+          {"turned_parts", repairs.turned_parts},
           {"welded_vertices", repairs.welded_vertices}};
 }
 

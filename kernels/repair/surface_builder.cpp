@@ -1,22 +1,39 @@
 #include "kernels/repair/surface_builder.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <utility>
 
-#include "kernels/surface/bounding_box.hpp"
+#include "kernels/repair/coincident_faces.hpp"
+#include "kernels/repair/edge_pairing.hpp"
+#include "kernels/repair/part_orientation.hpp"
+#include "kernels/repair/welding.hpp"
 #include "kernels/surface/circulators.hpp"
 #include "kernels/surface/edge_groups.hpp"
 
 namespace semigeo::kernels {
 namespace {
 
-/// Returns the origin of a surface: zero, or the centre of the bounding box, rounded to a power of
-/// ten below the size of the box.
-Eigen::Vector3d choose_origin(const std::vector<Eigen::Vector3d>& points) {
-  if (points.empty()) return Eigen::Vector3d::Zero();
-  const Eigen::AlignedBox3d box = bounding_box(points);
+/// The distance of two roundings of one number, in steps, with room for the diagonal.
+constexpr double kRoundedTwice = 2;
+
+/// Returns which points are corners of a face.
+std::vector<bool> used_points(const TriangleMesh& mesh) {
+  std::vector<bool> used(mesh.points.size(), false);
+  for (const Triangle& t : mesh.triangles)
+    for (const std::int32_t v : t) used[v] = true;
+  return used;
+}
+
+/// Returns the origin of a surface: zero, or the centre of the bounding box of the used points,
+/// rounded to a power of ten below the size of the box.
+Eigen::Vector3d choose_origin(const std::vector<Eigen::Vector3d>& points,
+                              const std::vector<bool>& used) {
+  Eigen::AlignedBox3d box;
+  for (std::size_t v = 0; v < points.size(); ++v)
+    if (used[v]) box.extend(points[v]);
+  if (box.isEmpty()) return Eigen::Vector3d::Zero();
   const double diagonal = box.sizes().norm();
   const Eigen::Vector3d middle = 0.5 * box.min() + 0.5 * box.max();
   if (!(diagonal > 0) || middle.norm() <= diagonal) return Eigen::Vector3d::Zero();
@@ -24,77 +41,12 @@ Eigen::Vector3d choose_origin(const std::vector<Eigen::Vector3d>& points) {
   return (middle / unit).array().round() * unit;
 }
 
-std::uint64_t hash_point(const Eigen::Vector3f& p) {
-  std::uint64_t hash = 0;
-  for (int c = 0; c < 3; ++c) {
-    hash = (hash ^ std::bit_cast<std::uint32_t>(p[c])) * 0x9E3779B97F4A7C15u;
-    hash ^= hash >> 32;
-  }
-  return hash;
-}
-
-/// Merges equal points in place, in the order of first appearance. Returns the new index of each
-/// point.
-std::vector<std::int32_t> weld(std::vector<Eigen::Vector3f>& points) {
-  std::vector<std::int32_t> new_index(points.size());
-  std::vector<std::int32_t> table(std::bit_ceil(points.size() * 3 / 2 + 1), kNone);
-  const std::size_t mask = table.size() - 1;
-  std::int32_t kept = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector3f p = points[i].array() + 0.0f;  // -0 becomes +0
-    std::size_t slot = hash_point(p) & mask;
-    while (table[slot] != kNone && points[table[slot]] != p) slot = (slot + 1) & mask;
-    if (table[slot] == kNone) {
-      table[slot] = kept;
-      points[kept++] = p;
-    }
-    new_index[i] = table[slot];
-  }
-  points.resize(kept);
-  points.shrink_to_fit();
-  return new_index;
-}
-
-std::int64_t drop_degenerate(std::vector<Triangle>& triangles) {
-  return static_cast<std::int64_t>(std::erase_if(
-      triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }));
-}
-
-Triangle sorted(Triangle t) {
-  std::sort(t.begin(), t.end());
-  return t;
-}
-
-/// Drops every face whose three vertices, in any order, appeared before.
-std::int64_t drop_duplicates(std::vector<Triangle>& triangles, std::int64_t vertex_count) {
-  // Faces are sorted into buckets by their lowest vertex. Within a bucket equal faces come one
-  // after the other, in the order of the list.
-  std::vector<std::int32_t> bucket(vertex_count + 1, 0);
-  const auto low = [](const Triangle& t) { return std::min({t[0], t[1], t[2]}); };
-  for (const Triangle& t : triangles) ++bucket[low(t) + 1];
-  for (std::int64_t v = 0; v < vertex_count; ++v) bucket[v + 1] += bucket[v];
-  std::vector<std::int32_t> order(triangles.size());
-  {
-    std::vector<std::int32_t> cursor(bucket.begin(), bucket.end() - 1);
-    for (std::size_t f = 0; f < triangles.size(); ++f)
-      order[cursor[low(triangles[f])]++] = static_cast<std::int32_t>(f);
-  }
-  std::vector<bool> duplicate(triangles.size(), false);
-  for (std::int64_t v = 0; v < vertex_count; ++v) {
-    const auto first = order.begin() + bucket[v];
-    const auto last = order.begin() + bucket[v + 1];
-    std::sort(first, last, [&](std::int32_t a, std::int32_t b) {
-      return std::pair(sorted(triangles[a]), a) < std::pair(sorted(triangles[b]), b);
-    });
-    for (auto f = first; f != last; ++f)
-      if (f != first && sorted(triangles[*f]) == sorted(triangles[*(f - 1)])) duplicate[*f] = true;
-  }
-  std::size_t kept = 0;
-  for (std::size_t f = 0; f < triangles.size(); ++f)
-    if (!duplicate[f]) triangles[kept++] = triangles[f];
-  const std::size_t dropped = triangles.size() - kept;
-  triangles.resize(kept);
-  return static_cast<std::int64_t>(dropped);
+/// Returns the longest step between neighbouring numbers of single precision at used points.
+double coordinate_step(const std::vector<Eigen::Vector3f>& points, const std::vector<bool>& used) {
+  float largest = 0;
+  for (std::size_t v = 0; v < points.size(); ++v)
+    if (used[v]) largest = std::max(largest, points[v].cwiseAbs().maxCoeff());
+  return std::nextafter(largest, HUGE_VALF) - largest;
 }
 
 /// Tells whether there is nothing to repair. No edge has more than two faces; the two faces of an
@@ -109,68 +61,6 @@ bool is_clean(const EdgeGroups& groups, const std::vector<Triangle>& triangles) 
       return false;
   }
   return true;
-}
-
-/// Turns faces over until the two faces of each edge agree. In each connected set of faces the
-/// minority is turned. A surface that cannot be oriented keeps some edges whose faces disagree.
-std::int64_t orient(std::vector<Triangle>& triangles, std::int64_t vertex_count) {
-  const auto partner = pair_twins(group_edges(triangles, vertex_count), triangles.size());
-  const auto start_of = [&](std::int32_t h) { return triangles[face_of(h)][corner_of(h)]; };
-  enum : std::uint8_t { kUnseen, kKeep, kFlip };
-  std::vector<std::uint8_t> state(triangles.size(), kUnseen);
-  std::vector<std::int32_t> camp;
-  std::int64_t flipped = 0;
-  for (std::size_t seed = 0; seed < triangles.size(); ++seed) {
-    if (state[seed] != kUnseen) continue;
-    state[seed] = kKeep;
-    camp.assign(1, static_cast<std::int32_t>(seed));
-    std::size_t turned = 0;
-    for (std::size_t k = 0; k < camp.size(); ++k) {
-      const std::int32_t f = camp[k];
-      for (int i = 0; i < 3; ++i) {
-        const std::int32_t h = halfedge(f, i);
-        if (partner[h] == kNone || state[face_of(partner[h])] != kUnseen) continue;
-        // Two faces agree if they run along their edge in opposite directions.
-        const bool disagree = start_of(h) == start_of(partner[h]);
-        const bool flip = (state[f] == kFlip) != disagree;
-        state[face_of(partner[h])] = flip ? kFlip : kKeep;
-        turned += flip;
-        camp.push_back(face_of(partner[h]));
-      }
-    }
-    const auto minority = 2 * turned > camp.size() ? kKeep : kFlip;
-    for (const std::int32_t f : camp) {
-      if (state[f] != minority) continue;
-      std::swap(triangles[f][1], triangles[f][2]);
-      ++flipped;
-    }
-  }
-  return flipped;
-}
-
-/// Keeps each face whose directed edges no earlier face has, and drops the others.
-std::int64_t drop_nonmanifold(std::vector<Triangle>& triangles, std::int64_t vertex_count) {
-  const EdgeGroups groups = group_edges(triangles, vertex_count);
-  std::vector<std::int32_t> edge_of(4 * triangles.size(), kNone);
-  for (std::int64_t e = 0; e < groups.edge_count(); ++e)
-    for (const std::int32_t h : groups.edge(e)) edge_of[h] = static_cast<std::int32_t>(e);
-
-  std::vector<std::array<bool, 2>> taken(groups.edge_count(), {false, false});
-  std::size_t kept = 0;
-  for (std::size_t f = 0; f < triangles.size(); ++f) {
-    const Triangle t = triangles[f];
-    std::array<bool*, 3> slot{};
-    for (int i = 0; i < 3; ++i) {
-      const std::int32_t h = halfedge(static_cast<std::int32_t>(f), i);
-      slot[i] = &taken[edge_of[h]][t[i] < t[(i + 1) % 3] ? 0 : 1];
-    }
-    if (*slot[0] || *slot[1] || *slot[2]) continue;
-    *slot[0] = *slot[1] = *slot[2] = true;
-    triangles[kept++] = t;
-  }
-  const std::size_t dropped = triangles.size() - kept;
-  triangles.resize(kept);
-  return static_cast<std::int64_t>(dropped);
 }
 
 /// Copies vertices that have several fans of faces. Each fan but the first gets a copy.
@@ -224,40 +114,98 @@ std::int64_t drop_isolated(Surface& surface) {
   return static_cast<std::int64_t>(dropped);
 }
 
+/// Returns the faces that run along an edge, from vertex to vertex, as an earlier face does. Once
+/// fans are split, only fans that meet themselves have such edges.
+std::vector<std::int32_t> conflicting_faces(const Surface& surface) {
+  const EdgeGroups groups = group_edges(surface.triangles, std::ssize(surface.points));
+  std::vector<std::int32_t> faces;
+  for (std::int64_t e = 0; e < groups.edge_count(); ++e) {
+    const auto members = groups.edge(e);
+    for (std::size_t k = 1; k < members.size(); ++k)
+      for (std::size_t j = 0; j < k; ++j)
+        if (surface.origin(members[j]) == surface.origin(members[k])) {
+          faces.push_back(face_of(members[k]));
+          break;
+        }
+  }
+  return faces;
+}
+
+/// Joins faces where more than two may meet in an edge, and counts what that takes.
+void pair_and_split(Faces faces, Surface& surface, SurfaceRepairs& repairs) {
+  const std::int64_t vertex_count = std::ssize(surface.points);
+  repairs.duplicate_faces = drop_duplicates(faces, vertex_count);
+  PairedEdges paired;
+  for (bool again = true; again;) {
+    paired = pair_edges(faces, surface.points);
+    repairs.flipped_faces += paired.flipped_faces;
+    const std::int64_t backs = drop_backs(faces, paired.twin, vertex_count);
+    repairs.duplicate_faces += backs;
+    again = backs > 0;
+  }
+  repairs.nonmanifold_edges = paired.nonmanifold_edges;
+  surface.triangles = std::move(faces.places);
+  surface.twin = std::move(paired.twin);
+  repairs.split_vertices = split_fans(surface);
+  for (auto alone = conflicting_faces(surface); !alone.empty();
+       alone = conflicting_faces(surface)) {
+    for (const std::int32_t f : alone)
+      for (int i = 0; i < 3; ++i) {
+        std::int32_t& twin = surface.twin[halfedge(f, i)];
+        if (twin != kNone) surface.twin[twin] = kNone;
+        twin = kNone;
+      }
+    repairs.nonmanifold_edges += std::ssize(alone);
+    repairs.split_vertices += split_fans(surface);
+  }
+}
+
 }  // namespace
 
 BuiltSurface build_surface(TriangleMesh&& mesh) {
   BuiltSurface built;
-  built.origin = choose_origin(mesh.points);
   Surface& surface = built.surface;
-  surface.points.reserve(mesh.points.size());
-  for (const auto& p : mesh.points) surface.points.push_back((p - built.origin).cast<float>());
-  std::vector<Eigen::Vector3d>().swap(mesh.points);
-  surface.triangles = std::move(mesh.triangles);
-
   SurfaceRepairs& repairs = built.repairs;
+  double gap = 0;
+  {
+    const std::vector<bool> used = used_points(mesh);
+    built.origin = choose_origin(mesh.points, used);
+    surface.points.reserve(mesh.points.size());
+    for (const auto& p : mesh.points) surface.points.push_back((p - built.origin).cast<float>());
+    built.coordinate_step = coordinate_step(surface.points, used);
+    gap = kRoundedTwice * rounding_of(mesh.points, built.coordinate_step);
+  }
+  std::vector<Eigen::Vector3d>().swap(mesh.points);
+
+  Faces faces{std::move(mesh.triangles), {}};
   {
     const std::int64_t before = std::ssize(surface.points);
-    const auto new_index = weld(surface.points);
-    for (Triangle& t : surface.triangles)
-      for (std::int32_t& v : t) v = new_index[v];
+    const auto new_index = weld_equal(surface.points);
     repairs.welded_vertices = before - std::ssize(surface.points);
+    if (repairs.welded_vertices > 0) faces.own = faces.places;
+    for (Triangle& t : faces.places)
+      for (std::int32_t& v : t) v = new_index[v];
   }
-  repairs.degenerate_faces = drop_degenerate(surface.triangles);
+  repairs.degenerate_faces = drop_degenerate(faces);
   const std::int64_t vertex_count = std::ssize(surface.points);
-  EdgeGroups groups = group_edges(surface.triangles, vertex_count);
-  if (!is_clean(groups, surface.triangles)) {
-    repairs.duplicate_faces = drop_duplicates(surface.triangles, vertex_count);
-    repairs.flipped_faces = orient(surface.triangles, vertex_count);
-    repairs.nonmanifold_faces = drop_nonmanifold(surface.triangles, vertex_count);
-    groups = group_edges(surface.triangles, vertex_count);
+  EdgeGroups groups = group_edges(faces.places, vertex_count);
+  repairs.gap_vertices = close_gaps(faces.places, groups, surface.points, gap);
+  if (repairs.gap_vertices > 0) {
+    repairs.degenerate_faces += drop_degenerate(faces);
+    groups = group_edges(faces.places, vertex_count);
+  }
+  if (is_clean(groups, faces.places)) {
+    surface.triangles = std::move(faces.places);
+    surface.twin = pair_twins(groups, surface.triangles.size());
+    repairs.split_vertices = split_fans(surface);  // renames vertices only
+  } else {
+    groups = {};
+    pair_and_split(std::move(faces), surface, repairs);
   }
   surface.triangles.shrink_to_fit();
-  surface.twin = pair_twins(groups, surface.triangles.size());
-  // The two functions that follow only rename vertices, so the twins stay valid.
-  repairs.split_vertices = split_fans(surface);
-  repairs.isolated_vertices = drop_isolated(surface);
+  repairs.isolated_vertices = drop_isolated(surface) - repairs.gap_vertices;
   connect(surface);
+  repairs.turned_parts = turn_inverted_parts(surface);
   return built;
 }
 

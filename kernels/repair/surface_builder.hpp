@@ -12,10 +12,12 @@ namespace semigeo::kernels {
 /// without being counted.
 struct SurfaceRepairs {
   std::int64_t welded_vertices = 0;    ///< Merged into an earlier vertex at the same place.
+  std::int64_t gap_vertices = 0;       ///< Merged across gaps that rounding has left.
   std::int64_t degenerate_faces = 0;   ///< Dropped: two corners are one vertex.
-  std::int64_t duplicate_faces = 0;    ///< Dropped: the same three vertices as an earlier face.
+  std::int64_t duplicate_faces = 0;    ///< Dropped: the same as an earlier face, or its back.
   std::int64_t flipped_faces = 0;      ///< Turned over to agree with their neighbours.
-  std::int64_t nonmanifold_faces = 0;  ///< Dropped: an edge already has its two faces.
+  std::int64_t nonmanifold_edges = 0;  ///< Cut apart: more than two faces meet there, or a twist.
+  std::int64_t turned_parts = 0;       ///< Closed parts that were inside out.
   std::int64_t split_vertices = 0;     ///< Copies made where fans of faces touch in one vertex.
   std::int64_t isolated_vertices = 0;  ///< Dropped: no face left.
 
@@ -26,15 +28,23 @@ struct SurfaceRepairs {
 struct BuiltSurface {
   Surface surface;                                   ///< Its points are relative to `origin`.
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< In the scan's length unit.
+  double coordinate_step = 0;  ///< Longest step between neighbouring numbers at the points.
   SurfaceRepairs repairs;
 };
 
-/// Makes a manifold surface of any triangle list. A scan that lies farther from its coordinate
-/// origin than it is large is moved, so that single precision keeps its detail. Identical points
-/// are welded, what a half-edge mesh cannot hold is dropped, and neighbours are oriented alike (the
-/// majority of each part decides). Vertices and faces keep their order; copies of split vertices
-/// come last. The mesh is consumed, to save memory. Indices must be valid and points finite. A
-/// result without faces is no error. The cost is linear in memory and, nearly, in time.
+/// Makes a manifold surface of any triangle list.
+/// - A scan that lies farther from its coordinate origin than it is large is moved, so that single
+///   precision keeps its detail. Vertices that no face uses do not count.
+/// - Identical points are welded, and gaps that are not wider than the numbers of the file are
+///   precise are closed.
+/// - Only degenerate and duplicate faces are dropped. Where more than two faces meet in an edge, or
+///   fans touch in a vertex, surfaces are cut apart (see `pair_edges`). Solids that touch in a face
+///   keep it both.
+/// - Neighbours are oriented alike, and closed parts outwards (see `turn_inverted_parts`).
+///
+/// Vertices and faces keep their order; copies of split vertices come last. The mesh is consumed,
+/// to save memory. Indices must be valid and points finite. A result without faces is no error. The
+/// cost is linear in memory and, nearly, in time.
 BuiltSurface build_surface(TriangleMesh&& mesh);
 
 }  // namespace semigeo::kernels

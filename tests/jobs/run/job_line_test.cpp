@@ -38,8 +38,8 @@ void every_field_of_result(Result& result, const Visit& visit) {
       result;
   visit_each(visit, format, vertices, triangles, parts, levels, vanished);
   {
-    auto& [a, b, c, d, e, f, g] = repairs;
-    visit_each(visit, a, b, c, d, e, f, g);
+    auto& [a, b, c, d, e, f, g, h, i] = repairs;
+    visit_each(visit, a, b, c, d, e, f, g, h, i);
   }
   {
     auto& [holes, a, b, c, d, tolerance, distance] = preparation;

@@ -249,19 +249,21 @@ TEST_F(SurfaceJobTest, RepairsAreCountedInTheDataset) {
                                          "f 3 1 4\nf 1 1 2\nf 1 2 7\nf 2 8\n";
   const SurfaceJob job = job_for(folder_ / "scan.obj");
   const SurfaceJobResult result = run(job, {.levels = 1});
-  EXPECT_EQ(result.vertices, 4);
-  EXPECT_EQ(result.triangles, 4);
+  EXPECT_EQ(result.vertices, 7);  // the fin has copies of its two vertices
+  EXPECT_EQ(result.triangles, 5);
   EXPECT_EQ(io::Dataset(job.output).header().repairs, (nlohmann::json{{"welded_vertices", 1},
                                                                       {"degenerate_faces", 1},
                                                                       {"duplicate_faces", 1},
                                                                       {"flipped_faces", 0},
-                                                                      {"nonmanifold_faces", 1},
-                                                                      {"split_vertices", 0},
-                                                                      {"isolated_vertices", 3},
+                                                                      {"nonmanifold_edges", 1},
+                                                                      {"split_vertices", 2},
+                                                                      {"gap_vertices", 0},
+                                                                      {"turned_parts", 0},
+                                                                      {"isolated_vertices", 2},
                                                                       {"polygons_triangulated", 0},
                                                                       {"bytes_after_end", 0},
                                                                       {"faces_skipped", 1}}));
-  EXPECT_EQ(json_of(result.repairs).at("isolated_vertices"), 3);
+  EXPECT_EQ(json_of(result.repairs).at("isolated_vertices"), 2);
 }
 
 TEST_F(SurfaceJobTest, AScanWithoutUsableTrianglesIsRefused) {
