@@ -45,7 +45,7 @@ json context_of(const BenchReport& report) {
           {"seconds", report.seconds}};
 }
 
-/// Times of one repetition, or an aggregate of many.
+/// Holds the times of one repetition, or an aggregate of many.
 struct Times {
   double real = 0;  ///< In milliseconds for one call.
   double cpu = 0;

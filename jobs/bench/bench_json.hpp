@@ -19,13 +19,13 @@ nlohmann::json google_document(const BenchReport& report);
 /// github-action-benchmark reads with `tool: customBiggerIsBetter`. Every value is a rate.
 nlohmann::json github_document(const BenchReport& report);
 
-/// A baseline that cannot be compared with.
+/// Is thrown for a baseline that cannot be compared with.
 class BaselineError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What rates depend on besides the program and the machine.
+/// Holds what rates depend on besides the program and the machine.
 struct BenchConditions {
   bool quick = false;
   std::string scan_xxh3 = {};  ///< Digest of the user's scan, or empty.

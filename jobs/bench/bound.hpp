@@ -4,7 +4,7 @@
 
 namespace semigeo::jobs {
 
-/// What keeps a figure from being better.
+/// Names what keeps a figure from being better.
 enum class Bound {
   kArithmetic,  ///< The work of one core, which was busy all the time.
   kMemory,      ///< What memory can move.
@@ -18,7 +18,7 @@ enum class Bound {
 /// Returns the name of a bound for people, as "one core".
 std::string_view name_of(Bound bound);
 
-/// What is known about a figure. Numbers are means over its repetitions.
+/// Holds what is known about a figure. Numbers are means over its repetitions.
 struct BoundEvidence {
   int threads = 1;
   double busy = 0;             ///< Cores that it kept busy: CPU time over time on the clock.

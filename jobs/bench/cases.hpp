@@ -8,7 +8,7 @@
 
 namespace semigeo::jobs {
 
-/// Cases that share what they work on.
+/// Points to the inputs that cases share.
 using BenchInputsPointer = std::shared_ptr<BenchInputs>;
 
 // Each function adds its cases, each on every one of these numbers of threads.

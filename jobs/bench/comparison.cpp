@@ -5,7 +5,7 @@
 namespace semigeo::jobs {
 namespace {
 
-/// From this ratio on, CPU time counts as much the same.
+/// From this ratio on, CPU time counts as the same.
 constexpr double kAsMuch = 0.9;
 
 const NamedRate* find(std::span<const NamedRate> rates, const std::string& name) {

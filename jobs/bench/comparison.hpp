@@ -8,7 +8,7 @@
 
 namespace semigeo::jobs {
 
-/// A rate that was measured, by the full name of its figure. More is better.
+/// Holds a rate that was measured, and the full name of its figure. More is better.
 struct NamedRate {
   std::string name;
   std::string unit;
@@ -17,7 +17,7 @@ struct NamedRate {
   bool disturbed = false;  ///< Other processes had cores that it needed.
 };
 
-/// One figure before and now.
+/// Holds the rates of one figure before and now.
 struct ComparedRate {
   std::string name;
   std::string unit;
@@ -42,7 +42,7 @@ struct ComparedRate {
   const char* verdict() const;
 };
 
-/// Two sets of figures, compared.
+/// Holds two sets of figures, compared by their names.
 struct Comparison {
   std::vector<ComparedRate> rates;     ///< Figures that both have, in the order of those now.
   std::vector<std::string> only_now;   ///< Figures that the baseline does not have.

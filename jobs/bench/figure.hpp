@@ -11,7 +11,7 @@
 
 namespace semigeo::jobs {
 
-/// What one call of a case has done.
+/// Holds what one call of a case has done.
 struct BenchWork {
   double amount = 0;          ///< In the unit of the case, without "/s".
   double vertex_levels = 0;   ///< Vertices times levels; 0 if the case has no such number.
@@ -19,7 +19,7 @@ struct BenchWork {
   double locked_seconds = 0;  ///< Time in parts that only one thread at a time may do.
 };
 
-/// Something to measure, on a number of threads.
+/// Describes something to measure, and on how many threads.
 struct BenchCase {
   std::string name;  ///< Name without the threads, as "level/scan".
   std::string unit;  ///< Unit of the rate, as "scans/s".
@@ -31,21 +31,21 @@ struct BenchCase {
   bool in_children = false;  ///< Child processes do the work.
 };
 
-/// One repetition: some calls of a case, one directly after the other. Numbers are sums over them.
+/// Holds one repetition, which is some calls of a case, one directly after the other. Numbers are
+/// sums over the calls.
 struct BenchRepetition {
   int calls = 0;
   double seconds = 0;      ///< Time on the clock.
   double cpu_seconds = 0;  ///< CPU time of the process and of its children.
   double disk_bytes = 0;   ///< Bytes read from disk, or handed over to be written to it.
   double other_cores = 0;  ///< Cores that other processes used meanwhile, on average.
-  /// Seconds in which threads of this process waited for a core; nothing if unknown.
-  std::optional<double> queued_seconds = 0;
+  std::optional<double> queued_seconds = 0;  ///< Time in which threads waited for a core, if known.
   BenchWork work;
 
   double rate() const { return seconds > 0 ? work.amount / seconds : 0; }
 };
 
-/// What was measured of one case.
+/// Holds what was measured of one case.
 struct Figure {
   std::string name;
   std::string unit = {};

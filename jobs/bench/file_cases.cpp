@@ -32,7 +32,7 @@ double size_of_file(const fs::path& path) {
   return static_cast<double>(fs::file_size(path));
 }
 
-/// What a dataset holds, read into memory so that it can be written again.
+/// Holds the content of a dataset in memory, so that it can be written again.
 class DatasetCopy {
  public:
   explicit DatasetCopy(const fs::path& path) {
@@ -131,7 +131,7 @@ class DatasetCopy {
   std::vector<std::vector<float>> fields_;
 };
 
-/// The files of the cases, made when first asked for.
+/// Makes the files of the cases when they are first asked for.
 class Files {
  public:
   explicit Files(BenchInputsPointer inputs) : inputs_(std::move(inputs)) {}

@@ -12,7 +12,7 @@
 
 namespace semigeo::jobs {
 
-/// How much each case has to do. Vertices are lower bounds.
+/// Says how much each case has to do. Numbers of vertices are lower bounds.
 struct BenchSizes {
   std::int64_t even_vertices = 20'000;   ///< Surface of a level and a kernel.
   std::int64_t scan_vertices = 12'000;   ///< Built-in surface like a scan.
@@ -29,12 +29,12 @@ struct BenchSizes {
 /// Returns the sizes of a full measurement, or those of a quick one.
 BenchSizes bench_sizes(bool quick);
 
-/// The number of the surfaces and sizes that rates belong to. Raise it when one of them changes:
+/// Numbers the surfaces and sizes that rates belong to. Raise it when one of them changes, because
 /// rates of different workloads are not compared.
 inline constexpr int kBenchWorkload = 1;
 
-/// What cases work on. Everything is made when it is first asked for, and kept; all files are below
-/// one folder. One thread at a time.
+/// Makes and keeps what cases work on. Everything is made when it is first asked for. All files are
+/// below one folder. It is used by one thread at a time.
 class BenchInputs {
  public:
   /// `folder` must exist and is left behind. `program` is the path of the program `semigeo`.

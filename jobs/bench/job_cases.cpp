@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Bytes that memory must move at least for each vertex and level of a job.
+/// Memory must move at least so many bytes for each vertex and level of a job.
 constexpr double kJobBytes = 1000;
 
 /// Runs `semigeo run` as a user does.

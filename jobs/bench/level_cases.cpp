@@ -13,17 +13,17 @@
 namespace semigeo::jobs {
 namespace {
 
-/// Vertices that a thread takes at a time, as in a job.
+/// A thread takes so many vertices at a time, as in a job.
 constexpr std::int64_t kVertexBlock = 512;
 
-/// Bytes that patches must read and write for each vertex, at least: its own, and two faces.
+/// Patches must read and write at least so many bytes for each vertex: its own, and two faces.
 constexpr double kPatchBytes = sizeof(Eigen::Vector4f) + sizeof(Eigen::Vector3f) +
                                sizeof(std::int32_t) + sizeof(kernels::EvolvedVertex) +
                                2 * (sizeof(kernels::GeodesicFace) + sizeof(kernels::QuadraticFace));
 
 using SurfaceOf = const kernels::Surface& (BenchInputs::*)();
 
-/// A surface at level 0, ready for its patches, and copies of it to evolve.
+/// Holds a surface at level 0, ready for its patches, and a copy of it that may evolve.
 class LevelZero {
  public:
   LevelZero(BenchInputsPointer inputs, SurfaceOf surface)

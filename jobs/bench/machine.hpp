@@ -7,7 +7,7 @@
 
 namespace semigeo::jobs {
 
-/// The machine that figures belong to.
+/// Describes the machine that figures belong to.
 struct MachineDescription {
   std::string host;
   std::string processor;           ///< Its name, as Linux says it.
@@ -23,7 +23,7 @@ struct MachineDescription {
 MachineDescription describe_machine(const std::filesystem::path& temporary_folder,
                                     const std::filesystem::path& root = "/");
 
-/// What all cores of the machine have done since it was started, in core seconds.
+/// Holds what all cores of the machine have done since it was started, in core seconds.
 struct MachineTimes {
   double busy = 0;    ///< Time in which they ran something.
   double stolen = 0;  ///< Time in which a hypervisor gave them to others.
@@ -40,7 +40,7 @@ std::optional<double> seconds_in_queue(const std::filesystem::path& root = "/");
 /// does not say.
 double load_average(const std::filesystem::path& root = "/");
 
-/// How busy the machine was with other things while figures were measured.
+/// Says how busy the machine was with other work while figures were measured.
 struct MachineLoad {
   double load_before = 0;  ///< Load average before.
   double load_after = 0;

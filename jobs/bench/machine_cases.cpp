@@ -14,7 +14,7 @@ constexpr std::int64_t kRounds = 4'000'000;  // of the loop over the sums, each 
 constexpr int kSums = 16;
 constexpr std::int64_t kTriadBlock = 1 << 16;
 
-/// Multiplies and adds in registers: what a core computes when nothing else holds it up.
+/// Multiplies and adds in registers, which is what a core can do if it waits for nothing.
 BenchWork arithmetic(engine::Workers& workers) {
   std::atomic<int> overflows = 0;
   workers.for_blocks(workers.threads(), 1, [&](engine::IndexRange) {
@@ -29,7 +29,7 @@ BenchWork arithmetic(engine::Workers& workers) {
   return {.amount = 1e-9 * operations + overflows, .memory_bytes = 1};
 }
 
-/// The arrays of a triad, a[i] = b[i] + s c[i].
+/// Holds the arrays of a triad, a[i] = b[i] + 3 c[i].
 struct Triad {
   explicit Triad(std::int64_t bytes) : a(bytes / sizeof(double)), b(a.size(), 1), c(a.size(), 2) {}
   std::vector<double> a, b, c;

@@ -17,7 +17,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// What this process and the children that it has waited for have used.
+/// Holds what this process and the children that it has waited for have used.
 struct Usage {
   double cpu_seconds = 0;
   double disk_bytes = 0;
@@ -88,8 +88,7 @@ BenchRepetition repeat(const BenchCase& bench, engine::Workers& workers, int cal
   return repetition;
 }
 
-/// What a first call of a case has told: how often it is called in a repetition, and what that
-/// costs with its preparation.
+/// Says how often a case is called in a repetition, and what that costs with its preparation.
 struct Calibration {
   int calls = 1;
   double seconds = 0;

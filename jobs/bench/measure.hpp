@@ -13,7 +13,7 @@
 
 namespace semigeo::jobs {
 
-/// How cases are measured.
+/// Says how cases are measured.
 struct MeasureSettings {
   RepetitionLimits repetitions;  ///< `seconds` counts from the first preparation.
   double least_seconds = 0.03;   ///< A repetition of a fast case has calls for so much time.
@@ -23,14 +23,14 @@ struct MeasureSettings {
   std::function<bool(int done, int total, const std::string& name)> progress = {};
 };
 
-/// What was measured.
+/// Holds what was measured.
 struct Measurement {
   std::vector<Figure> figures;  ///< figures[i] belongs to case i.
   MachineLoad load;
   bool complete = true;  ///< If false, somebody asked to stop.
 };
 
-/// One set of threads for each number of threads.
+/// Holds one set of threads for each number of threads.
 class WorkerSets {
  public:
   /// Returns the set of so many threads. It lives as long as this object.

@@ -31,7 +31,7 @@ kernels::TriangleMesh two_boulders(std::int64_t vertices) {
   return scene;
 }
 
-/// Models, libraries and a scene, made when first asked for.
+/// Makes models, libraries and a scene when they are first asked for.
 class RecognitionBench {
  public:
   explicit RecognitionBench(BenchInputsPointer inputs)

@@ -9,7 +9,7 @@
 
 namespace semigeo::jobs {
 
-/// What was measured, by which program, on which machine.
+/// Says what was measured, by which program, on which machine.
 struct BenchReport {
   MachineDescription machine;
   std::string version;           ///< Version of the program.

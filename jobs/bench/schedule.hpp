@@ -5,7 +5,7 @@
 
 namespace semigeo::jobs {
 
-/// How often cases are measured.
+/// Says how often cases are measured.
 struct RepetitionLimits {
   int least = 5;       ///< Every case is measured so often, whatever it costs.
   int most = 15;       ///< No case is measured more often.

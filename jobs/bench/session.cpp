@@ -9,7 +9,7 @@
 namespace semigeo::jobs {
 namespace {
 
-/// Seconds of all repetitions together, on two free cores.
+/// All repetitions together take so many seconds on two free cores.
 constexpr double kSeconds = 45;
 constexpr double kQuickSeconds = 8;
 

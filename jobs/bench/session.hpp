@@ -12,7 +12,7 @@
 
 namespace semigeo::jobs {
 
-/// What is measured, and for how long.
+/// Says what is measured, and for how long.
 struct SessionSettings {
   bool quick = false;             ///< About 10 seconds instead of a minute.
   std::string filter;             ///< A regular expression that names must contain; empty: all.
@@ -25,7 +25,7 @@ struct SessionSettings {
   std::function<bool(int done, int total, const std::string& name)> progress = {};
 };
 
-/// A measurement of the chosen cases, and a second one of those that seem to have fallen.
+/// Measures the chosen cases, and again those that seem to have fallen.
 class BenchSession {
  public:
   /// Throws std::invalid_argument if the filter is no regular expression, or no name has it. Makes

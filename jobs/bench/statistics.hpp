@@ -4,13 +4,13 @@
 
 namespace semigeo::jobs {
 
-/// What repetitions of one measurement say together.
+/// Holds what the repetitions of one measurement say together.
 struct Spread {
   double median = 0;
   double min = 0;
   double max = 0;
-  /// The ends of the range without its extremes: a seventh of the repetitions is set aside at each
-  /// end, rounded down. Below seven repetitions they are the smallest and the largest.
+  /// `low` and `high` are the ends of the range without its extremes. A seventh of the repetitions
+  /// is set aside at each end, rounded down. Below seven repetitions none is.
   double low = 0;
   double high = 0;
 

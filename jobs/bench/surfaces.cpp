@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 using kernels::TriangleMesh;
 using Corners = std::array<std::int32_t, 3>;
 
-/// Numbers that are the same with every standard library, whose distributions differ.
+/// Draws numbers that are the same with every standard library. Their distributions differ.
 class Chance {
  public:
   explicit Chance(std::uint64_t seed) : bits_(seed) {}
@@ -73,7 +73,7 @@ void add_face(TriangleMesh& mesh, std::map<std::array<double, 3>, std::int32_t>&
     }
 }
 
-/// Splits every edge whose two ends are chosen. Faces with one or two split edges are cut so that
+/// Splits every edge whose two ends are chosen. Faces with one split edge are cut in two, so that
 /// no vertex lies on an edge.
 void refine(TriangleMesh& mesh, const std::vector<bool>& chosen) {
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles;

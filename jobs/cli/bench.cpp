@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The options of the command.
+/// Holds the options of the command.
 struct BenchOptions {
   bool quick = false;
   std::string filter;

@@ -7,7 +7,7 @@
 namespace semigeo::jobs {
 namespace {
 
-/// A case that counts its calls.
+/// Returns a case that counts its calls.
 BenchCase counted(const std::string& name, int threads, std::vector<std::string>& calls) {
   return {.name = name,
           .unit = "calls/s",
