@@ -44,7 +44,10 @@ class Pairing {
     groups_ = group_edges(triangles_, std::ssize(points_));
     for (std::int64_t e = 0; e < groups_.edge_count(); ++e) {
       const auto members = groups_.edge(e);
-      if (members.size() > 2) join_by_angle(members);
+      if (members.size() > 2) {
+        join_by_camp(members);
+        join_by_angle(members);
+      }
       bool cut = members.size() > 2;
       for (const std::int32_t h : members) {
         const std::int32_t p = partner_[h];
@@ -88,6 +91,7 @@ class Pairing {
   void orient() {
     enum : std::uint8_t { kUnseen, kKeep, kFlip };
     std::vector<std::uint8_t> state(triangles_.size(), kUnseen);
+    camp_.resize(triangles_.size());
     std::vector<std::int32_t> camp;
     std::vector<std::int32_t> flipped;
     for (std::size_t seed = 0; seed < triangles_.size(); ++seed) {
@@ -110,8 +114,10 @@ class Pairing {
         }
       }
       const auto minority = 2 * turned > camp.size() ? kKeep : kFlip;
-      for (const std::int32_t f : camp)
+      for (const std::int32_t f : camp) {
+        camp_[f] = camp.front();
         if (state[f] == minority) flipped.push_back(f);
+      }
     }
     for (const std::int32_t f : flipped) turn_over(f);
     result_.flipped_faces = std::ssize(flipped);
@@ -125,6 +131,25 @@ class Pairing {
     std::swap(partner_[a], partner_[b]);
     for (const std::int32_t h : {a, b})
       if (partner_[h] != kNone) partner_[partner_[h]] = h;
+  }
+
+  /// Joins two of the members that are still alone if no other one belongs to their camp: what is
+  /// one surface elsewhere goes on as one.
+  void join_by_camp(std::span<const std::int32_t> members) {
+    std::vector<std::int32_t> alone;
+    for (const std::int32_t h : members)
+      if (partner_[h] == kNone) alone.push_back(h);
+    std::sort(alone.begin(), alone.end(), [&](std::int32_t a, std::int32_t b) {
+      return std::pair(camp_[face_of(a)], a) < std::pair(camp_[face_of(b)], b);
+    });
+    for (auto first = alone.begin(); first != alone.end();) {
+      const auto last = std::find_if(first, alone.end(), [&](std::int32_t h) {
+        return camp_[face_of(h)] != camp_[face_of(*first)];
+      });
+      if (last - first == 2 && start_of(triangles_, first[0]) != start_of(triangles_, first[1]))
+        join(first[0], first[1]);
+      first = last;
+    }
   }
 
   /// Joins those of the members that are still alone. Round the edge, material begins at one face
@@ -170,6 +195,7 @@ class Pairing {
   std::span<const Eigen::Vector3f> points_;
   EdgeGroups groups_;
   std::vector<std::int32_t> partner_;
+  std::vector<std::int32_t> camp_;  ///< First face of the connected set of each face.
   PairedEdges result_;
 };
 

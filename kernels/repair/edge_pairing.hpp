@@ -21,6 +21,7 @@ struct PairedEdges {
 /// faces alike. Faces are turned over in place, but none is dropped:
 /// - Two faces join, unless they cannot be oriented alike (a Moebius strip is cut).
 /// - Of more than two, those join that share both vertices of the file, if they are just two.
+/// - Of the others those join that are two of one surface, which is connected elsewhere.
 /// - Of the others those join that bound the same wedge of material, by their angle round the edge:
 ///   solids that touch along an edge come apart.
 ///

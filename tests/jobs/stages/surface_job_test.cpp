@@ -90,7 +90,7 @@ TEST_F(SurfaceJobTest, DatasetOfASphere) {
   EXPECT_EQ(header.length_unit, "mm");
   EXPECT_EQ(header.origin, (std::array<double, 3>{0, 0, 0}));
   const nlohmann::json& repairs = header.repairs;
-  EXPECT_EQ(repairs.size(), 10u);
+  EXPECT_EQ(repairs.size(), 12u);
   for (const auto& [name, count] : repairs.items()) EXPECT_EQ(count, 0) << name;
 
   ASSERT_EQ(dataset.level_count(), 4);
