@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,13 @@ bool is_keyword(std::string_view word) {
   });
 }
 
+/// Tells whether a name or path follows the keyword, to the end of the line.
+bool precedes_name(std::string_view keyword) {
+  constexpr std::array<std::string_view, 8> keywords = {
+      "o", "g", "usemtl", "mtllib", "usemap", "maplib", "shadow_obj", "trace_obj"};
+  return std::find(keywords.begin(), keywords.end(), keyword) != keywords.end();
+}
+
 class ObjBody {
  public:
   ObjBody(ByteSource& source, ScanBuilder& builder)
@@ -26,14 +34,17 @@ class ObjBody {
   void read() {
     while (scanner_.skip_to_content()) {
       const std::string_view keyword = scanner_.word();
+      bool name = false;
       if (keyword == "v") {
         read_vertex();
       } else if (keyword == "f") {
         read_face();
-      } else if (!is_keyword(keyword)) {
+      } else if (is_keyword(keyword)) {
+        name = precedes_name(keyword);
+      } else {
         scanner_.fail("the line does not begin with a keyword of OBJ (v, f, ...)", kMendLine);
       }
-      if (!scanner_.next_line()) break;
+      if (!(name ? scanner_.next_line_after_name() : scanner_.next_line())) break;
     }
   }
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bit>
 #include <string>
 #include <string_view>
@@ -24,7 +25,18 @@ OffHeader read_keyword(TextScanner& scanner) {
   const std::string_view word = scanner.peek();
   OffHeader header;
   if (word.find_first_not_of("0123456789") == std::string_view::npos) return header;
-  std::string_view rest = word;
+  std::string keyword(word);
+  // Some writers use small letters, and some put the first count right behind the keyword.
+  const auto is_small = [](char c) { return c >= 'a' && c <= 'z'; };
+  const auto is_capital = [](char c) { return c >= 'A' && c <= 'Z'; };
+  if (std::none_of(keyword.begin(), keyword.end(), is_capital))
+    for (char& c : keyword)
+      if (is_small(c)) c = static_cast<char>(c - 'a' + 'A');
+  const std::size_t off = keyword.find("OFF");
+  const bool glued = off != std::string::npos && keyword.size() > off + 3 &&
+                     keyword.find_first_not_of("0123456789", off + 3) == std::string::npos;
+  if (glued) keyword.resize(off + 3);
+  std::string_view rest = keyword;
   for (std::size_t before = 0; before != rest.size();) {
     before = rest.size();
     const auto strip = [&](std::string_view prefix, std::int64_t floats) {
@@ -42,7 +54,8 @@ OffHeader read_keyword(TextScanner& scanner) {
   if (rest != "OFF")
     scanner.fail("this is not an OFF file: it begins neither with OFF nor with the counts",
                  "correct its extension");
-  header.keyword = scanner.word();
+  header.keyword = keyword;
+  scanner.take(keyword.size());
   return header;
 }
 
@@ -69,10 +82,11 @@ class OffText {
     const Counts counts = read_counts();
     for (std::int64_t i = 0; i < counts.vertices; ++i) {
       begin_line("vertices", counts.vertices, i);
+      const Place place = this->place();
       const double x = scanner_.number("the x coordinate");
-      const double y = scanner_.number("the y coordinate");
-      const double z = scanner_.number("the z coordinate");
-      builder_.add_point(x, y, z, place());
+      const double y = next_number("the y coordinate");
+      const double z = next_number("the z coordinate");
+      builder_.add_point(x, y, z, place);
       scanner_.next_line();  // passes over normals and colours, which some files do not announce
     }
     for (std::int64_t i = 0; i < counts.faces; ++i) {
@@ -86,10 +100,20 @@ class OffText {
  private:
   Place place() const { return {Place::Unit::kLine, scanner_.line()}; }
 
+  /// Values may stand on lines of their own.
+  double next_number(std::string_view what) {
+    if (scanner_.at_line_end()) scanner_.skip_to_content();
+    return scanner_.number(what);
+  }
+  std::int64_t next_integer(std::string_view what) {
+    if (scanner_.at_line_end()) scanner_.skip_to_content();
+    return scanner_.integer(what);
+  }
+
   Counts read_counts() {
     scanner_.skip_to_content();
     const Counts counts{.vertices = scanner_.integer("the number of vertices"),
-                        .faces = scanner_.integer("the number of faces")};
+                        .faces = next_integer("the number of faces")};
     if (counts.vertices < 0 || counts.faces < 0)
       scanner_.fail("the header has a negative count", kMendLine);
     builder_.promise_points(counts.vertices, 5, place());  // "0 0 0"
@@ -103,13 +127,13 @@ class OffText {
   }
 
   void read_face() {
+    const Place place = this->place();
     const std::int64_t corners = scanner_.integer("the number of corners");
     if (corners < 0) scanner_.fail("a face has a negative number of corners", kMendLine);
-    builder_.check_corner_count(corners, place());
+    builder_.check_corner_count(corners, place);
     corners_.clear();
-    for (std::int64_t i = 0; i < corners; ++i)
-      corners_.push_back(scanner_.integer("a vertex index"));
-    builder_.add_face(corners_, place());
+    for (std::int64_t i = 0; i < corners; ++i) corners_.push_back(next_integer("a vertex index"));
+    builder_.add_face(corners_, place);
   }
 
   TextScanner& scanner_;

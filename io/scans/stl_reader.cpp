@@ -33,6 +33,8 @@ bool is_word(std::string_view text, std::string_view lower_case) {
 bool is_text(ByteSource& source) {
   source.fill(kPreambleBytes + kRecordBytes);
   std::string_view start = source.ahead().substr(0, 1024);
+  // Old systems mark the end of a text by ^Z, and some writers by NUL.
+  start = start.substr(0, start.find_last_not_of(std::string_view("\x1a\0", 2)) + 1);
   const bool controls = std::any_of(start.begin(), start.end(), [](char c) {
     return static_cast<unsigned char>(c) < ' ' && (c < '\t' || c > '\r');
   });
@@ -66,16 +68,17 @@ class StlText {
       read_line();
       if (!scanner_.next_line()) break;
     }
-    if (in_facet_ || in_solid_)
-      scanner_.fail(std::string("the file ends before its end") + (in_facet_ ? "facet" : "solid"),
-                    "copy the file again from its source");
+    if (in_facet_)
+      scanner_.fail("the file ends before its endfacet", "copy the file again from its source");
   }
 
  private:
   void read_line() {
-    const std::string_view keyword = scanner_.word();
+    std::string keyword(scanner_.word());
+    if (is_word(keyword, "end")) keyword += scanner_.word();  // "end loop"
     if (is_word(keyword, "vertex")) {
       read_vertex();
+    } else if (passed_over(keyword)) {
     } else if (is_word(keyword, "facet")) {
       expect(!in_facet_);
       in_facet_ = true;
@@ -94,12 +97,18 @@ class StlText {
       expect(in_facet_ && !in_loop_);
       in_facet_ = false;
     } else if (is_word(keyword, "solid")) {
-      expect(!in_facet_ && !in_solid_);
+      expect(!in_facet_);  // the one before may have no end
       in_solid_ = true;
     } else {
       expect(is_word(keyword, "endsolid") && !in_facet_);
       in_solid_ = false;
     }
+  }
+
+  /// Tells whether the line says nothing about the surface: a comment, a colour, an end mark.
+  static bool passed_over(std::string_view keyword) {
+    return is_word(keyword, "color") || keyword.starts_with('#') || keyword.starts_with("//") ||
+           keyword.find_first_not_of(std::string_view("\x1a\0", 2)) == std::string_view::npos;
   }
 
   void read_vertex() {
@@ -128,22 +137,37 @@ class StlText {
   bool in_solid_ = false, in_facet_ = false, in_loop_ = false;
 };
 
-void read_binary(ByteSource& source, ScanBuilder& builder) {
-  const Place count_place{Place::Unit::kByte, kHeaderBytes};
-  if (!source.fill(kPreambleBytes))
-    throw Error(source.path(), "",
-                "this is no STL file: it is neither text that begins with 'solid' nor long enough "
-                "to be binary",
-                "copy it again from its source or correct its extension");
-  const std::int64_t count = promised_triangles(source);
-  source.consume(kPreambleBytes);
-  // It is checked before reading, because another kind of file would give a confusing message.
-  const std::int64_t left = source.bytes_left().value_or(kRecordBytes * count);
-  if (left < kRecordBytes * count)
+/// Returns how many triangles follow the count that has just been read. If the size of the file and
+/// the count disagree, and the rest of the file is whole records, the size decides.
+std::int64_t triangles_ahead(const ByteSource& source, const ScanBuilder& builder,
+                             std::int64_t count) {
+  if (!source.bytes_left()) return count;  // compressed
+  const std::int64_t left = *source.bytes_left();
+  const bool whole_records = left > 0 && left % kRecordBytes == 0;
+  if (left < kRecordBytes * count && !whole_records)
     builder.fail_promise("triangles", count, left / kRecordBytes,
                          {Place::Unit::kByte, source.position() + left});
+  if (left < kRecordBytes * count || (count == 0 && whole_records)) return left / kRecordBytes;
+  return count;
+}
+
+/// Tells whether another solid follows, with a header and as many records as it counts, and at the
+/// end of the file or before room for one more.
+bool is_followed_by_solid(ByteSource& source) {
+  if (!source.bytes_left() || !source.fill(kPreambleBytes)) return false;
+  const std::int64_t count = promised_triangles(source);
+  const std::int64_t rest = *source.bytes_left() - kPreambleBytes - kRecordBytes * count;
+  return count > 0 && (rest == 0 || rest >= kPreambleBytes + kRecordBytes);
+}
+
+void read_solid(ByteSource& source, ScanBuilder& builder) {
+  const Place count_place{Place::Unit::kByte, source.position() + kHeaderBytes};
+  const std::int64_t promised = promised_triangles(source);
+  source.consume(kPreambleBytes);
+  // It is checked before reading, because another kind of file would give a confusing message.
+  const std::int64_t count = triangles_ahead(source, builder, promised);
   builder.promise_faces(count, kRecordBytes, count_place);
-  builder.promise_points(3 * count, kRecordBytes / 3, count_place);
+  builder.promise_points(builder.point_count() + 3 * count, kRecordBytes / 3, count_place);
   for (std::int64_t i = 0; i < count; ++i) {
     if (!source.fill(kRecordBytes)) {
       source.skip(kRecordBytes);
@@ -157,6 +181,17 @@ void read_binary(ByteSource& source, ScanBuilder& builder) {
     add_triangle(builder, place);
     source.consume(kRecordBytes);
   }
+}
+
+void read_binary(ByteSource& source, ScanBuilder& builder) {
+  if (!source.fill(kPreambleBytes))
+    throw Error(source.path(), "",
+                "this is no STL file: it is neither text that begins with 'solid' nor long enough "
+                "to be binary",
+                "copy it again from its source or correct its extension");
+  do {
+    read_solid(source, builder);
+  } while (is_followed_by_solid(source));
 }
 
 Scan read_stl(ByteSource& source, const ScanLimits& limits) {

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "io/files/error.hpp"
 #include "io/scans/decimal.hpp"
@@ -97,6 +98,13 @@ bool TextScanner::next_line() {
   return true;
 }
 
+bool TextScanner::next_line_after_name() {
+  const TextSyntax syntax = std::exchange(syntax_, {.hash_comments = syntax_.hash_comments});
+  const bool more = next_line();
+  syntax_ = syntax;
+  return more;
+}
+
 void TextScanner::skip_newline() {
   reach_word();
   ++line_;
@@ -136,6 +144,10 @@ std::string_view TextScanner::word() {
   const std::string_view next = peek();
   cursor_ += next.size();
   return next;
+}
+
+void TextScanner::take(std::size_t bytes) {
+  cursor_ += std::min(bytes, peek().size());
 }
 
 std::string_view TextScanner::word_window() {

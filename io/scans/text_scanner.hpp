@@ -36,6 +36,9 @@ class TextScanner {
   bool at_line_end();
   /// Leaves the current line. Returns false if the text ends with it.
   bool next_line();
+  /// Leaves the current line, which ends at its end even if a backslash stands there: a name may be
+  /// a path of Windows. Returns false if the text ends with it.
+  bool next_line_after_name();
   /// Skips empty lines until something is ahead. Returns false if the text ends first.
   bool skip_to_content();
   /// Returns the next word of the line, which stays ahead; it is empty at the end of the line. It
@@ -44,6 +47,8 @@ class TextScanner {
   /// Takes the next word of the line; it is empty at the end of the line. It is valid until the
   /// next call.
   std::string_view word();
+  /// Takes the first bytes of the next word of the line; the rest is the next word.
+  void take(std::size_t bytes);
   /// Takes the next word of the line as a number. `what` names it in the error: "an x coordinate".
   double number(std::string_view what);
   /// Takes the next word of the line as a whole number.

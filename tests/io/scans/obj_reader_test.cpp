@@ -9,6 +9,13 @@ using ObjReader = ScanFileTest;
 
 const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
+TEST_F(ObjReader, ANameThatEndsInABackslashDoesNotSwallowTheNextLine) {
+  const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (const std::string name : {"usemtl C:\\scans\\", "mtllib a\\", "o \\", "g x \\"})
+    EXPECT_EQ(read("a.obj", points + name + "\nf 1 2 3\n").mesh.triangles.size(), 1u) << name;
+  EXPECT_EQ(read("a.obj", points + "f 1 \\\n2 3\n").mesh.triangles.size(), 1u);
+}
+
 TEST_F(ObjReader, ReadsEveryKindOfCorner) {
   const Scan scan =
       read("a.obj", "# comment\nmtllib a b.mtl\no part\n" + kSquare +

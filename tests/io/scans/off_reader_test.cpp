@@ -9,13 +9,20 @@ const std::string kBody = "0 0 0\n1 0 0\n0 1 0.5\n3 0 1 2\n";
 
 TEST_F(OffReader, ReadsEveryHeader) {
   for (const std::string start :
-       {"OFF\n3 1 0\n", "OFF 3 1 3\n", "OFF\n3 1\n", "3 1 0\n",
-        "# comment\nOFF # comment\n\n# x\n3 1 0 # n\n\n", "\xef\xbb\xbfOFF\r\n3 1 0\r\n"}) {
+       {"OFF\n3 1 0\n", "OFF3 1 0\n", "off\n3 1 0\n", "OFF\n3\n1\n0\n\n", "OFF 3 1 3\n",
+        "OFF\n3 1\n", "3 1 0\n", "# comment\nOFF # comment\n\n# x\n3 1 0 # n\n\n",
+        "\xef\xbb\xbfOFF\r\n3 1 0\r\n"}) {
     const Scan scan = read("a.off", start + kBody);
     EXPECT_EQ(scan.format, "OFF");
     EXPECT_EQ(point(scan, 2), Eigen::Vector3d(0, 1, 0.5));
     EXPECT_EQ(scan.mesh.triangles, (Triangles{{0, 1, 2}}));
   }
+}
+
+TEST_F(OffReader, ValuesMayStandOnLinesOfTheirOwn) {
+  const Scan scan = read("a.off", "OFF 3 1 0\n0\n0 0\n1 0\n\n0\n0 1 # y\n0.5\n3\n0\n1 2\n");
+  EXPECT_EQ(point(scan, 2), Eigen::Vector3d(0, 1, 0.5));
+  EXPECT_EQ(scan.mesh.triangles, (Triangles{{0, 1, 2}}));
 }
 
 TEST_F(OffReader, IgnoresWhatThePrefixesAdd) {
@@ -71,14 +78,14 @@ TEST_F(OffReader, RefusesOtherDimensionsAndOtherFiles) {
 }
 
 TEST_F(OffReader, RefusesBadValuesWithTheirLine) {
-  expect_parts(error("a.off", "OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n"),
-               {"line 4", "the z coordinate"});
+  expect_parts(error("a.off", "OFF\n3 1 0\n0 0 0\n1 0\nx 1 0\n3 0 1 2\n"),
+               {"line 5", "the z coordinate"});
   expect_parts(error("a.off", "OFF\n3 1 0\n0 0 0\n1 inf 0\n0 1 0\n3 0 1 2\n"),
                {"line 4", "y coordinate"});
   expect_parts(error("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
                {"line 6", "vertex 3"});
   expect_parts(error("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n"),
-               {"line 6", "vertex index"});
+               {"the file ends where a vertex index"});
   expect_parts(error("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n-1\n"), {"line 6", "negative"});
   expect_parts(error("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n99999 1\n"), {"line 6", "65535"});
   expect_parts(error("a.off", "OFF\n3 x 0\n"), {"line 2", "number of faces, found 'x'"});
