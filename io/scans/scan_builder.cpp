@@ -71,6 +71,22 @@ void ScanBuilder::add_polygon(std::span<const std::int64_t> corners) {
                                     static_cast<std::int32_t>(corners[c])});
 }
 
+void ScanBuilder::add_bad_point(double x, double y, double z, Place place) {
+  const std::int64_t index = point_count();
+  if (!first_bad_point_) first_bad_point_ = {index, x, y, z, place};
+  bad_points_.push_back(index);
+  add_point(0, 0, 0, place);
+}
+
+void ScanBuilder::drop_bad_points() {
+  std::vector<bool> bad(scan_.mesh.points.size(), false);
+  for (const std::int64_t v : bad_points_) bad[v] = true;
+  scan_.bad_vertices = std::ssize(bad_points_);
+  scan_.faces_of_bad_vertices = static_cast<std::int64_t>(std::erase_if(
+      scan_.mesh.triangles, [&](const auto& t) { return bad[t[0]] || bad[t[1]] || bad[t[2]]; }));
+  if (scan_.mesh.triangles.empty()) fail_coordinate(*first_bad_point_);
+}
+
 Scan ScanBuilder::finish(std::string format) {
   if (point_count() == 0)
     throw Error(source_.path(), "", "it holds no vertices", "export a scan with a surface");
@@ -87,6 +103,7 @@ Scan ScanBuilder::finish(std::string format) {
     add_polygon(corners);
   }
   waiting_ = {};
+  if (!bad_points_.empty()) drop_bad_points();
   scan_.format = std::move(format);
   return std::move(scan_);
 }
@@ -103,15 +120,16 @@ void ScanBuilder::fail_promise(std::string_view what, std::int64_t promised, std
        kExportAgain);
 }
 
-void ScanBuilder::fail_coordinate(double x, double y, double z, Place place) const {
-  for (const auto& [name, value] : {std::pair{"x", x}, {"y", y}, {"z", z}}) {
+void ScanBuilder::fail_coordinate(const BadPoint& point) const {
+  for (const auto& [name, value] : {std::pair{"x", point.x}, {"y", point.y}, {"z", point.z}})
     if (!std::isfinite(value))
-      fail(place, std::string("the ") + name + " coordinate is not a finite number",
+      fail(point.place, std::string("the ") + name + " coordinate is not a finite number",
            "remove or repair this vertex");
+  for (const auto& [name, value] : {std::pair{"x", point.x}, {"y", point.y}, {"z", point.z}})
     if (std::abs(value) > limits_.max_coordinate)
-      fail(place, std::string("the ") + name + " coordinate is implausibly large", kExportAgain);
-  }
-  fail(place, "a coordinate is out of range", kExportAgain);
+      fail(point.place, std::string("the ") + name + " coordinate is implausibly large",
+           kExportAgain);
+  fail(point.place, "a coordinate is out of range", kExportAgain);
 }
 
 void ScanBuilder::fail_corner_count(Place place) const {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -40,12 +41,12 @@ class ScanBuilder {
 
   std::int64_t point_count() const { return static_cast<std::int64_t>(scan_.mesh.points.size()); }
 
-  /// Adds a vertex. Throws Error if a coordinate is not finite or too large, or if there are too
-  /// many vertices.
+  /// Adds a vertex. One with a coordinate that is not finite or too large is noted: `finish` drops
+  /// it, and with it its faces. Throws Error if there are too many vertices.
   void add_point(double x, double y, double z, Place place) {
     const double limit = limits_.max_coordinate;  // the comparisons are false for NaN
     if (!(std::abs(x) <= limit && std::abs(y) <= limit && std::abs(z) <= limit))
-      fail_coordinate(x, y, z, place);
+      return add_bad_point(x, y, z, place);
     if (point_count() >= limits_.max_vertices) fail_limit("vertices", limits_.max_vertices, place);
     scan_.mesh.points.emplace_back(x, y, z);
   }
@@ -58,7 +59,8 @@ class ScanBuilder {
   /// unless promise_points was called.
   void add_face(std::span<const std::int64_t> corners, Place place);
 
-  /// Does what had to wait for the last vertex and returns the scan.
+  /// Does what had to wait for the last vertex and returns the scan. Throws Error if it has no
+  /// vertices or no faces, or none without bad vertices.
   Scan finish(std::string format);
 
  private:
@@ -70,8 +72,17 @@ class ScanBuilder {
       largest_ahead_place_ = place;
     }
   }
+  /// A vertex that cannot be used.
+  struct BadPoint {
+    std::int64_t index;
+    double x, y, z;
+    Place place;
+  };
+
   void add_polygon(std::span<const std::int64_t> corners);
-  [[noreturn]] void fail_coordinate(double x, double y, double z, Place place) const;
+  void add_bad_point(double x, double y, double z, Place place);
+  void drop_bad_points();
+  [[noreturn]] void fail_coordinate(const BadPoint& point) const;
   [[noreturn]] void fail_corner_count(Place place) const;
   [[noreturn]] void fail_index(std::int64_t corner, Place place) const;
   [[noreturn]] void fail_limit(std::string_view what, std::int64_t limit, Place place) const;
@@ -86,7 +97,9 @@ class ScanBuilder {
   std::int64_t triangle_count_ = 0;  // with those of the polygons that wait
   std::int64_t largest_ahead_ = -1;  // largest index met before its vertex, and where first
   Place largest_ahead_place_;
-  std::vector<std::int32_t> waiting_;  // polygons met before their vertices: size, then corners
+  std::vector<std::int32_t> waiting_;     // polygons met before their vertices: size, then corners
+  std::vector<std::int64_t> bad_points_;  // indices
+  std::optional<BadPoint> first_bad_point_;
   PolygonTriangulator triangulator_;
   std::vector<Eigen::Vector3d> polygon_;
 };

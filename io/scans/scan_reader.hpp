@@ -37,6 +37,10 @@ struct Scan {
   /// Bytes that are not blank, behind all that the header promises.
   std::int64_t bytes_after_end = 0;
   std::int64_t faces_skipped = 0;  ///< Faces with one or two corners, or none.
+  /// Vertices with coordinates that are not finite or implausibly large. They lie at the origin and
+  /// belong to no face.
+  std::int64_t bad_vertices = 0;
+  std::int64_t faces_of_bad_vertices = 0;  ///< Triangles that were dropped with them.
 };
 
 /// Reads a surface from PLY, OBJ, OFF or STL, each plain or gzip compressed. Everything in the file
@@ -44,7 +48,7 @@ struct Scan {
 ///
 /// Every vertex is finite and every index valid in what it returns; it may still be degenerate or
 /// not a manifold. Everything else throws `Error`: no such file, another format than the name says,
-/// more promised in a header than the file holds, coordinates that are not finite, indices out of
+/// more promised in a header than the file holds, no triangle with finite coordinates, indices out of
 /// range, no vertices, no faces (a point cloud), more than `limits`.
 ///
 /// Streams through a buffer of 1 MiB; memory is that of the mesh and never follows a promise of a

@@ -45,6 +45,8 @@ nlohmann::json json_of(const ScanRepairs& repairs) {
   nlohmann::json json = json_of(repairs.surface);
   json["polygons_triangulated"] = repairs.polygons_triangulated;
   json["faces_skipped"] = repairs.faces_skipped;
+  json["bad_vertices"] = repairs.bad_vertices;
+  json["faces_of_bad_vertices"] = repairs.faces_of_bad_vertices;
   json["bytes_after_end"] = repairs.bytes_after_end;
   return json;
 }
@@ -64,6 +66,8 @@ ScanSurface read_surface(const std::filesystem::path& path, const std::string& x
   result.repairs = {.surface = result.built.repairs,
                     .polygons_triangulated = scan.polygons_triangulated,
                     .faces_skipped = scan.faces_skipped,
+                    .bad_vertices = scan.bad_vertices,
+                    .faces_of_bad_vertices = scan.faces_of_bad_vertices,
                     .bytes_after_end = scan.bytes_after_end};
   return result;
 }

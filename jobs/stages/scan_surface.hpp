@@ -14,6 +14,8 @@ struct ScanRepairs {
   kernels::SurfaceRepairs surface;
   std::int64_t polygons_triangulated = 0;  ///< Faces with more than three corners.
   std::int64_t faces_skipped = 0;          ///< Faces with fewer than three corners.
+  std::int64_t bad_vertices = 0;           ///< Dropped: not finite or implausibly large.
+  std::int64_t faces_of_bad_vertices = 0;  ///< Triangles dropped with them.
   std::int64_t bytes_after_end = 0;        ///< Bytes behind all that the scan's header promises.
 };
 

@@ -16,6 +16,18 @@ TEST_F(ObjReader, ANameThatEndsInABackslashDoesNotSwallowTheNextLine) {
   EXPECT_EQ(read("a.obj", points + "f 1 \\\n2 3\n").mesh.triangles.size(), 1u);
 }
 
+TEST_F(ObjReader, OneBadVertexIsNotABadScan) {
+  const Scan scan = read("a.obj",
+                         "v 0 0 0\nv nan 0 0\nv 1 0 0\nv 0 1 0\nv 1e40 0 0\nv inf 1 0\n"
+                         "f 1 3 4\nf 1 2 3\nf 5 3 4\nf 1 3 4 2\n");
+  EXPECT_EQ(scan.bad_vertices, 3);
+  EXPECT_EQ(scan.faces_of_bad_vertices, 3);
+  EXPECT_EQ(scan.mesh.triangles.size(), 2u);
+  for (const Eigen::Vector3d& p : scan.mesh.points) EXPECT_TRUE(p.allFinite());
+  expect_parts(error("a.obj", "v 0 0 0\nv nan 0 0\nv 1 0 0\nf 1 2 3\n"),
+               {"line 2", "not a finite"});
+}
+
 TEST_F(ObjReader, ReadsEveryKindOfCorner) {
   const Scan scan =
       read("a.obj", "# comment\nmtllib a b.mtl\no part\n" + kSquare +
@@ -89,7 +101,8 @@ TEST_F(ObjReader, CountsShortFaces) {
 TEST_F(ObjReader, RefusesBadLines) {
   expect_parts(error("a.obj", "v 0 0\nv 1 0 0\n"), {"line 1", "the z coordinate should be"});
   expect_parts(error("a.obj", "v 0 0 zero\n"), {"line 1", "found 'zero'"});
-  expect_parts(error("a.obj", "v 0 0 1.#IND\n"), {"line 1", "z coordinate", "finite"});
+  expect_parts(error("a.obj", "v 0 0 1.#IND\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+               {"line 1", "z coordinate", "finite"});
   expect_parts(error("a.obj", kSquare + "f 0 1 2\n"), {"line 5", "vertex 0", "counts from 1"});
   expect_parts(error("a.obj", kSquare + "f 1 2 a\n"), {"line 5", "not v, v/vt"});
   expect_parts(error("a.obj", kSquare + "f 1 2 3.5\n"), {"line 5", "not v, v/vt"});

@@ -233,6 +233,7 @@ TEST_F(PlyReader, RefusesBadBinaryValuesWithTheirByte) {
   std::string file = header("binary_little_endian", kTriangle);
   const std::size_t start = file.size();
   for (const float x : {0.f, 0.f, 0.f, 1.f, 0.f, std::nanf(""), 0.f, 1.f, 0.f}) file += bytes_of(x);
+  file += '\x03' + bytes_of(0) + bytes_of(1) + bytes_of(2);
   expect_parts(error("a.ply", file), {"byte " + std::to_string(start + 12), "z coordinate"});
   expect_parts(error("a.ply.gz", gzip(file)), {"byte " + std::to_string(start + 12) + " after"});
 }

@@ -114,10 +114,13 @@ TEST_F(StlReader, RefusesBadLines) {
                {"line 4", "vertex or endloop"});
 }
 
-TEST_F(StlReader, RefusesBadNumbersInBinary) {
+TEST_F(StlReader, DropsFacetsWithBadNumbers) {
   std::string file = binary("", 2);
   file.replace(84 + 50 + 12, 4, bytes_of(std::nanf("")));
-  expect_parts(error("a.stl", file), {"byte 134", "x coordinate"});
+  EXPECT_EQ(read("a.stl", file).faces_of_bad_vertices, 1);
+  EXPECT_EQ(read("a.stl", file).mesh.triangles.size(), 1u);
+  file.replace(84 + 12, 4, bytes_of(std::nanf("")));
+  expect_parts(error("a.stl", file), {"byte 84", "x coordinate"});
 }
 
 TEST_F(StlReader, RefusesWhatIsNotStl) {

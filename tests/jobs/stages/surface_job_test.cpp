@@ -90,7 +90,7 @@ TEST_F(SurfaceJobTest, DatasetOfASphere) {
   EXPECT_EQ(header.length_unit, "mm");
   EXPECT_EQ(header.origin, (std::array<double, 3>{0, 0, 0}));
   const nlohmann::json& repairs = header.repairs;
-  EXPECT_EQ(repairs.size(), 12u);
+  EXPECT_EQ(repairs.size(), 14u);
   for (const auto& [name, count] : repairs.items()) EXPECT_EQ(count, 0) << name;
 
   ASSERT_EQ(dataset.level_count(), 4);
@@ -251,18 +251,21 @@ TEST_F(SurfaceJobTest, RepairsAreCountedInTheDataset) {
   const SurfaceJobResult result = run(job, {.levels = 1});
   EXPECT_EQ(result.vertices, 7);  // the fin has copies of its two vertices
   EXPECT_EQ(result.triangles, 5);
-  EXPECT_EQ(io::Dataset(job.output).header().repairs, (nlohmann::json{{"welded_vertices", 1},
-                                                                      {"degenerate_faces", 1},
-                                                                      {"duplicate_faces", 1},
-                                                                      {"flipped_faces", 0},
-                                                                      {"nonmanifold_edges", 1},
-                                                                      {"split_vertices", 2},
-                                                                      {"gap_vertices", 0},
-                                                                      {"turned_parts", 0},
-                                                                      {"isolated_vertices", 2},
-                                                                      {"polygons_triangulated", 0},
-                                                                      {"bytes_after_end", 0},
-                                                                      {"faces_skipped", 1}}));
+  EXPECT_EQ(io::Dataset(job.output).header().repairs,
+            (nlohmann::json{{"welded_vertices", 1},
+                            {"degenerate_faces", 1},
+                            {"duplicate_faces", 1},
+                            {"flipped_faces", 0},
+                            {"nonmanifold_edges", 1},
+                            {"split_vertices", 2},
+                            {"gap_vertices", 0},
+                            {"turned_parts", 0},
+                            {"isolated_vertices", 2},
+                            {"polygons_triangulated", 0},
+                            {"bytes_after_end", 0},
+                            {"faces_skipped", 1},
+                            {"bad_vertices", 0},
+                            {"faces_of_bad_vertices", 0}}));
   EXPECT_EQ(json_of(result.repairs).at("isolated_vertices"), 2);
 }
 
