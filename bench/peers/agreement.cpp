@@ -1,12 +1,15 @@
 #include "bench/peers/agreement.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "bench/support/quantile.hpp"
 #include "kernels/surface/nearest_surface.hpp"
 
 namespace semigeo::peers {
 namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Returns the normal of a face, not of unit length.
 Eigen::Vector3d face_normal(const kernels::Surface& surface, std::int32_t face) {
@@ -79,6 +82,26 @@ Agreement Comparison::agreement() const {
   result.rms_difference = rms(differences) / result.rms;
   result.median_difference = bench::median(differences) / bench::median(values);
   return result;
+}
+
+AgreementRow at_equal_detail(std::span<const AgreementRow> rows, double rms) {
+  for (std::size_t i = 0; i + 1 < rows.size(); ++i) {
+    const AgreementRow &a = rows[i], &b = rows[i + 1];
+    if (!(a.agreement.rms >= rms && rms >= b.agreement.rms)) continue;
+    const double t = std::log(a.agreement.rms / rms) / std::log(a.agreement.rms / b.agreement.rms);
+    const auto between = [t](double x, double y) {
+      return std::exp(std::lerp(std::log(x), std::log(y), t));
+    };
+    AgreementRow row = a;
+    row.size = between(a.size, b.size);
+    row.microseconds = between(a.microseconds, b.microseconds);
+    row.agreement.rms = rms;
+    row.agreement.rms_difference = between(a.agreement.rms_difference, b.agreement.rms_difference);
+    row.agreement.median_difference =
+        between(a.agreement.median_difference, b.agreement.median_difference);
+    return row;
+  }
+  return {"", kUnknown, kUnknown, {0, kUnknown, kUnknown, kUnknown}};
 }
 
 }  // namespace semigeo::peers

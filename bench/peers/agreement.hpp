@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "kernels/surface/surface.hpp"
@@ -49,5 +50,18 @@ class Comparison {
   std::vector<double> differences_;  ///< |first - second|
   std::vector<double> values_;       ///< |first| and |second|
 };
+
+/// Says how well views of one object agree in H, by one method.
+struct AgreementRow {
+  std::string method;
+  double size = 0;          ///< Level of ours; radius of jets, in mean edge lengths.
+  double microseconds = 0;  ///< CPU time for a vertex; for level k, that of levels 0 to k.
+  Agreement agreement;
+};
+
+/// Returns what a method would do at the size that leaves the RMS `rms` of H. It lies between two
+/// of the rows, which must fall in RMS, and is interpolated on logarithmic scales. All numbers are
+/// NaN if no two rows enclose that RMS.
+AgreementRow at_equal_detail(std::span<const AgreementRow> rows, double rms);
 
 }  // namespace semigeo::peers

@@ -103,9 +103,10 @@ void run(const Options& options) {
   report.libraries = libraries();
   report.rounds = options.rounds;
   if (!options.range.empty()) report.agreement = agreement_rows(options.range);
-  for (const Subject& subject : subjects(options.scans))
-    for (MethodRow& row : compare_methods(subject, report.libraries, options.rounds))
-      report.methods.push_back(std::move(row));
+  if (options.rounds > 0)
+    for (const Subject& subject : subjects(options.scans))
+      for (MethodRow& row : compare_methods(subject, report.libraries, options.rounds))
+        report.methods.push_back(std::move(row));
   std::fputs(markdown(report).c_str(), stdout);
   write(options.json, json(report));
   if (!report.agreement.empty()) write(options.chart, chart(report));
@@ -129,7 +130,8 @@ int main(int argc, char** argv) {
   app.add_option("--range", options.range, "Folder with bun000, bun090 and top3 as .ply.gz")
       ->type_name("DIR")
       ->check(CLI::ExistingDirectory);
-  app.add_option("--rounds", options.rounds, "Runs of each method")->check(CLI::Range(1, 1000));
+  app.add_option("--rounds", options.rounds, "Runs of each method; 0: agreement alone")
+      ->check(CLI::Range(0, 1000));
   app.add_option("--json", options.json, "Write the numbers as JSON")->type_name("FILE");
   app.add_option("--chart", options.chart, "Draw the agreement as SVG")->type_name("FILE");
   try {

@@ -25,8 +25,8 @@ Subject make_subject(std::string name, kernels::TriangleMesh mesh,
 
 /// Holds what a method found in one run over a subject.
 struct Result {
-  double seconds = 0;            ///< CPU time of what is timed.
-  double items = 0;              ///< What the time is divided by: vertices or pairs of points.
+  double seconds = 0;  ///< CPU time of what is timed.
+  double items = 0;    ///< What the time is divided by: vertices or pairs of points; 0: not run.
   std::vector<double> gaussian;  ///< (N) K, NaN if there is none; empty if the method has none.
   std::vector<double> mean;      ///< (N) H, negative where convex; empty if the method has none.
 };

@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "bench/support/svg_plot.hpp"
 
 namespace semigeo::peers {
 namespace {
-
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Returns a number with two or three digits, or "-".
 std::string number(double value, const char* format = "%.3g") {
@@ -130,35 +127,17 @@ bench::Series series(const std::string& label, const std::vector<AgreementRow>& 
 
 }  // namespace
 
-AgreementRow at_equal_detail(const std::vector<AgreementRow>& jets, double rms) {
-  for (std::size_t i = 0; i + 1 < jets.size(); ++i) {
-    const AgreementRow &a = jets[i], &b = jets[i + 1];
-    if (!(a.agreement.rms >= rms && rms >= b.agreement.rms)) continue;
-    const double t = (a.agreement.rms - rms) / (a.agreement.rms - b.agreement.rms);
-    const auto between = [t](double x, double y) {
-      return std::exp(std::lerp(std::log(x), std::log(y), t));
-    };
-    AgreementRow row = a;
-    row.size = between(a.size, b.size);
-    row.microseconds = between(a.microseconds, b.microseconds);
-    row.agreement.rms = rms;
-    row.agreement.rms_difference = between(a.agreement.rms_difference, b.agreement.rms_difference);
-    row.agreement.median_difference =
-        between(a.agreement.median_difference, b.agreement.median_difference);
-    return row;
-  }
-  return {"", kUnknown, kUnknown, {}};
-}
-
 std::string markdown(const Report& report) {
-  std::string text = libraries_text(report) + "\nMedian / least CPU time of a vertex in us, " +
-                     std::to_string(report.rounds) + " runs in turns; median errors of K, H.\n\n" +
-                     methods_table(report);
-  if (report.agreement.empty()) return text;
-  return text + "\nAgreement of range views in H, " +
-         std::to_string(report.agreement.front().agreement.places) + " places.\n\n" +
-         agreement_table(report) + "\nAt equal detail: RMS difference (median difference).\n\n" +
-         equal_detail_table(report);
+  std::string text = libraries_text(report);
+  if (!report.methods.empty())
+    text += "\nMedian / least CPU time of a vertex in us, " + std::to_string(report.rounds) +
+            " runs in turns; median errors of K, H.\n\n" + methods_table(report);
+  if (!report.agreement.empty())
+    text += "\nAgreement of range views in H, " +
+            std::to_string(report.agreement.front().agreement.places) + " places.\n\n" +
+            agreement_table(report) + "\nAt equal detail: RMS difference (median difference).\n\n" +
+            equal_detail_table(report);
+  return text;
 }
 
 std::string json(const Report& report) {
@@ -190,7 +169,7 @@ std::string chart(const Report& report) {
   for (const AgreementRow& row : levels) most = std::max(most, 1.05 * row.agreement.rms);
   bench::Plot apart{
       "Two scans of one object", "detail left: RMS of H, 1/m", "difference of H, %", {}};
-  bench::Plot time{"Time", "detail left: RMS of H, 1/m", "us a vertex", {}};
+  bench::Plot time{"Time", "detail left: RMS of H, 1/m", "µs a vertex", {}};
   for (bench::Plot* plot : {&apart, &time}) {
     const bool is_time = plot == &time;
     plot->series.push_back(series("semigeo, levels 0 to 8", levels, most, is_time));

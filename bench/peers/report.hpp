@@ -17,10 +17,6 @@ struct Report {
   std::vector<AgreementRow> agreement;
 };
 
-/// Returns what jets of one degree would do at the radius at which their RMS of H is `rms`, between
-/// two of the rows. They fall in RMS. `size` is NaN if no two rows enclose it.
-AgreementRow at_equal_detail(const std::vector<AgreementRow>& jets, double rms);
-
 /// Returns tables in Markdown.
 std::string markdown(const Report& report);
 /// Returns the same as JSON.

@@ -19,14 +19,6 @@ struct RangeView {
 /// Returns the three views of the Stanford bunny that are used, with their published poses.
 std::vector<RangeView> bunny_views();
 
-/// Says how well views of one object agree in H, by one method.
-struct AgreementRow {
-  std::string method;
-  double size = 0;          ///< Level of ours; radius of jets, in mean edge lengths.
-  double microseconds = 0;  ///< CPU time for a vertex; for level k, that of levels 0 to k.
-  Agreement agreement;
-};
-
 /// Holds views of one object in its frame.
 class ViewsOfOneObject {
  public:

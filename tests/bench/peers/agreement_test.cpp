@@ -81,5 +81,28 @@ TEST(Agreement, ValuesThatAreNotThereAreLeftOut) {
   EXPECT_EQ(compared(places, values, whole).places, static_cast<std::int64_t>(places.size()) - 1);
 }
 
+AgreementRow row_of(double size, double microseconds, double rms, double difference) {
+  return {"jets", size, microseconds, {7, difference / 2, difference, rms}};
+}
+
+TEST(EqualDetail, LiesBetweenTheRowsThatEncloseIt) {
+  const std::vector<AgreementRow> rows = {row_of(2, 10, 160, 0.8), row_of(4, 40, 40, 0.2),
+                                          row_of(6, 90, 20, 0.1)};
+  const AgreementRow middle = at_equal_detail(rows, 80);
+  EXPECT_NEAR(middle.size, std::sqrt(8.0), 1e-12);
+  EXPECT_NEAR(middle.microseconds, 20, 1e-12);
+  EXPECT_NEAR(middle.agreement.rms_difference, 0.4, 1e-12);
+  EXPECT_NEAR(middle.agreement.median_difference, 0.2, 1e-12);
+  EXPECT_NEAR(at_equal_detail(rows, 40).microseconds, 40, 1e-9);
+  EXPECT_NEAR(at_equal_detail(rows, 20).microseconds, 90, 1e-9);
+}
+
+TEST(EqualDetail, IsUnknownBeyondTheRows) {
+  const std::vector<AgreementRow> rows = {row_of(2, 10, 160, 0.8), row_of(4, 40, 40, 0.2)};
+  EXPECT_TRUE(std::isnan(at_equal_detail(rows, 161).size));
+  EXPECT_TRUE(std::isnan(at_equal_detail(rows, 39).agreement.rms_difference));
+  EXPECT_TRUE(std::isnan(at_equal_detail({}, 39).microseconds));
+}
+
 }  // namespace
 }  // namespace semigeo::peers
