@@ -113,6 +113,7 @@ std::vector<AgreementRow> ViewsOfOneObject::levels() const {
   return rows;
 }
 
+#ifdef SEMIGEO_PEERS_CGAL
 AgreementRow ViewsOfOneObject::jets(int degree, double radius) const {
   AgreementRow row{"jets of degree " + std::to_string(degree), radius, 0, {}};
   std::vector<std::vector<double>> mean;
@@ -128,5 +129,6 @@ AgreementRow ViewsOfOneObject::jets(int degree, double radius) const {
   row.agreement = agreement(mean);
   return row;
 }
+#endif
 
 }  // namespace semigeo::peers

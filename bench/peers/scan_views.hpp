@@ -30,7 +30,8 @@ class ViewsOfOneObject {
 
   /// Returns how well the levels of ours agree.
   std::vector<AgreementRow> levels() const;
-  /// Returns how well jets agree that use all vertices within `radius` mean edge lengths.
+  /// Returns how well jets agree that use all vertices within `radius` mean edge lengths. Call it
+  /// only if CGAL is installed.
   AgreementRow jets(int degree, double radius) const;
 
   /// Returns the mean edge length of all views, in their unit.
