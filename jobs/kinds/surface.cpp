@@ -20,6 +20,8 @@ using nlohmann::json;
 
 /// It is raised whenever the same scan and parameters give other bytes.
 static constexpr const char* kVersion = "surface 12";
+/// It is added to the version if the levels are octaves, whose bytes may change alone.
+static constexpr const char* kOctavesVersion = ", octaves 2";
 
 /// Names every number and word of a result, for writing and for reading.
 template <typename Visit>
@@ -268,8 +270,11 @@ SurfaceJobData& surface_data(Job& job) {
 
 std::string surface_key(const std::string& name, const std::string& input_xxh3,
                         const std::string& parameters_json) {
-  return io::xxh3_of_text(std::string(kVersion) + '\n' + parameters_json + '\n' + name + '\n' +
-                          input_xxh3);
+  const json parameters = json::parse(parameters_json, nullptr, false);
+  const bool octaves = parameters.is_object() && parameters.contains("schedule") &&
+                       parameters["schedule"] == "octaves";
+  return io::xxh3_of_text(kVersion + std::string(octaves ? kOctavesVersion : "") + '\n' +
+                          parameters_json + '\n' + name + '\n' + input_xxh3);
 }
 
 }  // namespace semigeo::jobs

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// It is raised whenever the same dataset and parameters give other bytes.
-static constexpr const char* kVersion = "triplets 1";
+static constexpr const char* kVersion = "triplets 2";
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TripletsJobResult, features, samples, triplets)
 

@@ -13,6 +13,7 @@
 #include "jobs/stages/remesh_surface.hpp"
 #include "kernels/evolution/evolution.hpp"
 #include "kernels/lanes/evolve_vertices.hpp"
+#include "kernels/repair/coarsening.hpp"
 #include "kernels/surface/vertex_rows.hpp"
 
 namespace semigeo::jobs {
@@ -29,6 +30,16 @@ constexpr double kMaxRestoration = 8;
 /// The number of further passes for the normals of vertices with truncated patches. Errors along a
 /// rim influence each other; two passes suffice.
 constexpr int kRimPasses = 2;
+
+/// The area of an equilateral triangle with edges of length 1.
+constexpr double kUnitTriangle = 0.4330127018922193;
+/// The number of faces below which no part is coarsened. A patch crosses about 180 faces. Where a
+/// part has few more, patches are bent round it, and too few vertices are left to place features:
+/// with 600 faces, fewer objects are recognised in scenes that are cut. So small a mesh costs
+/// little.
+constexpr double kLeastFaces = 4000;
+/// A part is coarsened if it has at least so many times the faces that it should have.
+constexpr double kWorthCoarsening = 1.25;
 
 /// Computes the patches of `count` vertices, at most `kVertexBlock`, and calls
 /// `use(v, its result)` for each. `vertex_at(i)` is vertex i.
@@ -262,10 +273,10 @@ void EvolvingSurface::move() {
   mesh_.normals.swap(next_normals_);
   variance_ += kernels::gaussian_filters().variance * step_ * step_;
   std::vector<PartMeasure> parts = restore_size();
+  if (options_.schedule == Schedule::kOctaves) step_ = std::max(first_step_, std::sqrt(variance_));
   if (options_.remesh) parts = remesh(std::move(parts));
   mean_edge_length_ = jobs::mean_edge_length(parts);
-  if (options_.schedule == Schedule::kOctaves)
-    set_step(std::max(first_step_, std::sqrt(variance_)));
+  if (options_.schedule == Schedule::kOctaves) set_step(step_);
   if (!options_.curved) angle_weighted_normals();
   prepare_faces();
 }
@@ -309,10 +320,33 @@ std::vector<PartMeasure> EvolvingSurface::restore_size() {
   return parts;
 }
 
-/// Removes odd triangles, and parts on which no patch was valid, from the moved mesh. Returns the
-/// measures of the parts afterwards.
+/// Coarsens the mesh until its mean edge length has grown as the step has. Adds what was done to
+/// `counts`. Returns the measures of the parts afterwards.
+std::vector<PartMeasure> EvolvingSurface::coarsen(std::vector<PartMeasure> parts,
+                                                  kernels::RemeshCounts& counts) {
+  const double grown = first_edge_length_ * step_ / first_step_;
+  std::vector<double> lengths(parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const double triangles = parts[i].twice_area / 2 / kUnitTriangle;  // with edges of length 1
+    const double length = std::min(grown, std::sqrt(triangles / kLeastFaces));
+    const double faces = triangles / (length * length);
+    if (static_cast<double>(parts[i].faces) > kWorthCoarsening * faces) lengths[i] = length;
+  }
+  if (std::ranges::count(lengths, 0) == std::ssize(lengths)) return parts;
+  const kernels::RemeshCounts coarsened = kernels::coarsen(mesh_, lengths);
+  if (coarsened == kernels::RemeshCounts{}) return parts;
+  counts += coarsened;
+  target_faces_ = std::min(target_faces_, mesh_.connectivity.face_count());
+  return measure_parts(mesh_, context_);
+}
+
+/// Coarsens the moved mesh under octaves, and removes odd triangles and parts on which no patch was
+/// valid. Returns the measures of the parts afterwards.
 std::vector<PartMeasure> EvolvingSurface::remesh(std::vector<PartMeasure> parts) {
   const engine::Stopwatch stopwatch(context_.observer, "remeshing");
+  kernels::RemeshCounts coarsened;
+  if (options_.schedule == Schedule::kOctaves && options_.coarsen)
+    parts = coarsen(std::move(parts), coarsened);
   std::vector<std::uint8_t> dropped(parts.size());
   std::size_t largest = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -326,6 +360,7 @@ std::vector<PartMeasure> EvolvingSurface::remesh(std::vector<PartMeasure> parts)
                                         .faces = target_faces_,
                                         .dropped = dropped},
                                        context_);
+  result.counts += coarsened;
   shortest_side_ = result.shortest_side;
   remeshed_ = result.counts;
   vanished_ = vanished_ || result.vanished;

@@ -53,7 +53,8 @@ struct LevelFields {
 /// How the sampling step grows from level to level.
 enum class Schedule {
   kUniform,  ///< It does not grow, as in the thesis.
-  kOctaves   ///< It grows with the scale: two levels double it. Parts are never rescaled.
+  kOctaves   ///< It grows with the scale: two levels double it. Parts are never rescaled, and the
+             ///< mesh is coarsened as the step grows.
 };
 
 /// The measure of each part that is restored after a smoothing (5.1).
@@ -72,6 +73,7 @@ struct EvolutionOptions {
   bool remesh = true;      ///< Odd triangles and lost parts are removed after level 0 (5.5).
   bool principal = false;  ///< Principal curvatures are computed as well.
   double step_factor = 1;  ///< Sample distance of level 0, in its mean edge lengths.
+  bool coarsen = true;     ///< Under `kOctaves`, remeshing also coarsens the mesh.
 };
 
 /// Where vertices and faces of level 0 come from.
@@ -95,9 +97,10 @@ class EvolvingSurface {
   LevelFields evaluate();
 
   /// Makes the surface, smoothed by the patches of `evaluate`, the next level. Call it after
-  /// `evaluate`. If the options say so, each part is rescaled about its centroid, and odd triangles
-  /// and parts on which no patch was valid are removed, but not the largest part. A surface that
-  /// collapses completely becomes a triangle or a tetrahedron. Source: thesis 5.1, 5.4, 5.5.
+  /// `evaluate`. If the options say so, each part is rescaled about its centroid, the mesh is
+  /// coarsened as the step grows, and odd triangles and parts on which no patch was valid are
+  /// removed, but not the largest part. A surface that collapses completely becomes a triangle or a
+  /// tetrahedron. Source: thesis 5.1, 5.4, 5.5.
   void move();
 
   /// Calls `evaluate`, then `move` if `move` is set, and returns the fields.
@@ -108,6 +111,8 @@ class EvolvingSurface {
   const kernels::LevelMesh& mesh() const { return mesh_; }
   /// Returns the number of scan units in one internal unit.
   double unit() const { return unit_; }
+  /// Returns the mean edge length of level 0 in scan units.
+  double first_edge_length() const { return first_edge_length_ * unit_; }
   const EvolutionOptions& options() const { return options_; }
   /// Returns the (N) normals of the smoothed surface, unit or zero. Call it between `evaluate` and
   /// `move`.
@@ -129,6 +134,7 @@ class EvolvingSurface {
   void sharpen(std::int64_t count, const VertexAt& vertex_at, std::vector<std::uint8_t>& truncated);
   double restoring_factor(const PartMeasure& was, const PartMeasure& is) const;
   std::vector<PartMeasure> restore_size();
+  std::vector<PartMeasure> coarsen(std::vector<PartMeasure> parts, kernels::RemeshCounts& counts);
   std::vector<PartMeasure> remesh(std::vector<PartMeasure> parts);
   void adopt_mesh();
   LevelConnectivity connectivity() const;

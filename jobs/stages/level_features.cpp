@@ -32,6 +32,9 @@ constexpr double kFlatMean = 1e-5;
 /// The least prominence of a peak, in |value|. Peaks below it come from the errors of K and H on
 /// surfaces where they are constant, like spheres.
 constexpr float kLeastProminence = 1e-3f;
+/// The distance of the samples along a contour on a coarsened mesh, in mean edge lengths. A contour
+/// crosses an edge about as often, and fewer samples would smooth its torsion more than its level.
+constexpr double kCoarseSpacing = 0.7;
 
 /// Returns what `find(range, found)` appends for the blocks of [0, count), in the order of the
 /// blocks.
@@ -68,6 +71,10 @@ class Finder {
         fields_(fields),
         workers_(context.workers),
         curved_(surface.options().curved),
+        coarse_(surface.options().schedule == Schedule::kOctaves),
+        contour_spacing_(coarse_ ? std::max(surface.first_edge_length(),
+                                            kCoarseSpacing * fields.mean_edge_length)
+                                 : fields.mean_edge_length),
         radius_(options.radius * fields.scale / surface.unit()),
         row_(fields.stored_order->size()) {
     const auto completeness = static_cast<float>(options.min_completeness);
@@ -120,7 +127,9 @@ class Finder {
     features.reserve(peaks.size());
     for (const std::int32_t v : peaks) {
       Feature feature = feature_at([v](const auto& values) { return values[v]; });
-      const kernels::Summit summit = kernels::summit(surface_, mesh_.points, field, v);
+      const kernels::Summit summit = coarse_
+                                         ? kernels::fitted_summit(surface_, mesh_.points, field, v)
+                                         : kernels::summit(surface_, mesh_.points, field, v);
       feature.position = summit.of(fields_.points);
       feature.initial_position = summit.of(mesh_.initial_points);
       feature.vertex = row_[v];
@@ -214,8 +223,7 @@ class Finder {
     std::vector<Eigen::Vector3d> polyline;
     polyline.reserve(crossings.size());
     for (const EdgePoint& e : crossings) polyline.push_back(point_at(e));
-    const kernels::ArcSamples samples =
-        kernels::resample(polyline, closed, fields_.mean_edge_length);
+    const kernels::ArcSamples samples = kernels::resample(polyline, closed, contour_spacing_);
     const auto next = [&](const ArcPoint& p) {
       return p.segment + 1 < static_cast<std::int32_t>(polyline.size()) ? p.segment + 1 : 0;
     };
@@ -258,6 +266,8 @@ class Finder {
   const LevelFields& fields_;
   engine::Workers& workers_;
   bool curved_;
+  bool coarse_;                    ///< Edges are as long as the level's smoothing allows.
+  double contour_spacing_;         ///< Distance of the samples along contours.
   double radius_;                  ///< In internal units.
   std::vector<std::int32_t> row_;  ///< Row of each vertex.
   CurvatureField gaussian_;

@@ -69,8 +69,9 @@ Table evolution_rows() {
                   {{"semigeodesic", Coordinates::kSemigeodesic}, {"polar", Coordinates::kPolar}})},
       {.key = "schedule",
        .name = "schedule",
-       .help = "Sample distance from level to level: the same, as in the thesis, or growing\n"
-               "with the scale reached, so that two levels double it",
+       .help =
+           "Sample distance from level to level: the same, as in the thesis, or growing\n"
+           "with the scale reached, so that two levels double it and the mesh is coarsened along",
        .value = choice(field<kGroup, &Options::schedule>(),
                        {{"uniform", Schedule::kUniform}, {"octaves", Schedule::kOctaves}})},
       {.key = "rescale",

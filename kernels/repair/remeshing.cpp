@@ -58,6 +58,13 @@ double LevelMesh::height2(std::int32_t f) const {
   return squared_height(point(t[0]), point(t[1]), point(t[2]));
 }
 
+void LevelMesh::reorder(const std::vector<std::int32_t>& order) {
+  std::vector<std::int32_t> faces;
+  connectivity = reordered(connectivity, order, &faces);
+  gather_rows(vertex_rows(), order);
+  face_filled = gathered(face_filled, faces);
+}
+
 void find_odd_faces(const LevelMesh& mesh, std::int32_t begin, std::int32_t end, double length,
                     std::vector<std::int32_t>& faces) {
   // No side is shorter than the least height.
@@ -433,16 +440,9 @@ std::vector<std::int32_t> Remesher::order_of_survivors() {
   return order;
 }
 
-void Remesher::reorder(const std::vector<std::int32_t>& order) {
-  std::vector<std::int32_t> faces;
-  mesh_.connectivity = reordered(mesh_.connectivity, order, &faces);
-  gather_rows(mesh_.vertex_rows(), order);
-  mesh_.face_filled = gathered(mesh_.face_filled, faces);
-}
-
 RemeshCounts Remesher::finish() {
   if (counts_ == RemeshCounts{}) return counts_;
-  reorder(order_of_survivors());
+  mesh_.reorder(order_of_survivors());
   if (!parts_changed_) return counts_;
   mesh_.part_count = number_parts(mesh_.connectivity, mesh_.part);
   const std::vector<std::int32_t>& part = mesh_.part;
@@ -451,7 +451,7 @@ RemeshCounts Remesher::finish() {
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::int32_t a, std::int32_t b) { return part[a] < part[b]; });
-  reorder(order);
+  mesh_.reorder(order);
   return counts_;
 }
 

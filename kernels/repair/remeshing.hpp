@@ -37,6 +37,9 @@ struct LevelMesh {
   }
   /// Returns the squared least height of a face.
   double height2(std::int32_t f) const;
+  /// Puts the vertices into another order, as `kernels::reordered` does, with all that they carry.
+  /// Vertices without faces may be left out.
+  void reorder(const std::vector<std::int32_t>& order);
 };
 
 /// Finds odd triangles: appends those faces of [begin, end) that have a side or a height shorter
@@ -124,7 +127,6 @@ class Remesher {
   void mark_face(std::int32_t f, std::uint8_t filled);
   bool split(std::int32_t h, double shortest);
   std::vector<std::int32_t> order_of_survivors();
-  void reorder(const std::vector<std::int32_t>& order);
 
   LevelMesh& mesh_;
   SurfaceEditor editor_;

@@ -42,6 +42,10 @@ class Sheet {
     const Summit point = kernels::summit(prepared_.surface, prepared_.points, field(), v);
     return point.of(prepared_.points).head<2>();
   }
+  Eigen::Vector2f fitted_summit(std::int32_t v) const {
+    const Summit point = kernels::fitted_summit(prepared_.surface, prepared_.points, field(), v);
+    return point.of(prepared_.points).head<2>();
+  }
   std::vector<float> prominences() const {
     std::vector<std::int32_t> steps;
     for (std::int32_t v = 0; v < prepared_.surface.vertex_count(); ++v)
@@ -90,6 +94,30 @@ TEST(ExtremaTest, OnAPlateauTheSummitIsTheVertex) {
   const Sheet sheet([](double, double) { return 2.0; });
   const std::int32_t middle = sheet.nearest(0, 0);
   EXPECT_EQ(sheet.summit(middle), sheet.at(middle));
+}
+
+// Hills as narrow as features are on levels whose edges are as long as the step.
+TEST(ExtremaTest, TheFittedSummitOfANarrowHillIsItsTop) {
+  for (const Eigen::Vector2d& top : {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(0.03, 0.02),
+                                     Eigen::Vector2d(-0.04, 0.03), Eigen::Vector2d(0.05, -0.05)}) {
+    const Sheet sheet([&](double x, double y) { return -hill(x - top.x(), y - top.y(), 1, 0.15); });
+    const std::vector<std::int32_t> maxima = sheet.maxima(1);
+    ASSERT_EQ(maxima.size(), 1);
+    const Eigen::Vector2d found = sheet.fitted_summit(maxima[0]).cast<double>();
+    EXPECT_LT((found - top).norm(), 0.01);  // a tenth of an edge
+  }
+}
+
+TEST(ExtremaTest, AFitOfTooLittleIsTheSummit) {
+  Sheet sheet([](double x, double y) { return 10 + x + 0.3 * y; });
+  const std::int32_t corner = sheet.nearest(3, 3);
+  EXPECT_EQ(sheet.fitted_summit(corner), sheet.summit(corner));
+  sheet.completeness.assign(sheet.completeness.size(), 0);
+  sheet.completeness[corner] = 1;
+  EXPECT_EQ(sheet.fitted_summit(corner), sheet.at(corner));
+  const Sheet flat([](double, double) { return 2.0; });
+  const std::int32_t middle = flat.nearest(0, 0);
+  EXPECT_EQ(flat.fitted_summit(middle), flat.at(middle));
 }
 
 /// Also where the ring is cut off by a boundary or by vertices that take no part.
