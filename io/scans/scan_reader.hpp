@@ -48,8 +48,8 @@ struct Scan {
 ///
 /// Every vertex is finite and every index valid in what it returns; it may still be degenerate or
 /// not a manifold. Everything else throws `Error`: no such file, another format than the name says,
-/// more promised in a header than the file holds, no triangle with finite coordinates, indices out of
-/// range, no vertices, no faces (a point cloud), more than `limits`.
+/// more promised in a header than the file holds, no triangle with finite coordinates, indices out
+/// of range, no vertices, no faces (a point cloud), more than `limits`.
 ///
 /// Streams through a buffer of 1 MiB; memory is that of the mesh and never follows a promise of a
 /// header. Several threads may call the function at once.
