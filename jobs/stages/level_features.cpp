@@ -32,6 +32,8 @@ constexpr double kFlatMean = 1e-5;
 /// The least prominence of a peak, in |value|. Peaks below it come from the errors of K and H on
 /// surfaces where they are constant, like spheres.
 constexpr float kLeastProminence = 1e-3f;
+/// A mesh counts as coarsened if its mean edge is longer than so many of level 0.
+constexpr double kCoarsened = 1.2;
 /// The distance of the samples along a contour on a coarsened mesh, in mean edge lengths. A contour
 /// crosses an edge about as often, and fewer samples would smooth its torsion more than its level.
 constexpr double kCoarseSpacing = 0.7;
@@ -71,7 +73,8 @@ class Finder {
         fields_(fields),
         workers_(context.workers),
         curved_(surface.options().curved),
-        coarse_(surface.options().schedule == Schedule::kOctaves),
+        coarse_(surface.options().schedule == Schedule::kOctaves &&
+                fields.mean_edge_length > kCoarsened * surface.first_edge_length()),
         contour_spacing_(coarse_ ? std::max(surface.first_edge_length(),
                                             kCoarseSpacing * fields.mean_edge_length)
                                  : fields.mean_edge_length),
@@ -266,7 +269,7 @@ class Finder {
   const LevelFields& fields_;
   engine::Workers& workers_;
   bool curved_;
-  bool coarse_;                    ///< Edges are as long as the level's smoothing allows.
+  bool coarse_;                    ///< The mesh was coarsened.
   double contour_spacing_;         ///< Distance of the samples along contours.
   double radius_;                  ///< In internal units.
   std::vector<std::int32_t> row_;  ///< Row of each vertex.

@@ -21,7 +21,7 @@ def bad_scans():
     sphere = icosphere(2)
     whole = ply_bytes(sphere)
     nan = (sphere[0].copy(), sphere[1])
-    nan[0][7, 1] = np.nan
+    nan[0][:, 1] = np.nan
     wrong_index = (sphere[0], sphere[1].copy())
     wrong_index[1][5, 2] = 162
     return [
