@@ -122,7 +122,8 @@ class EvolveVerticesTest : public testing::TestWithParam<InstructionSet> {
   static void expect_same(const SampledSurface& surface, std::vector<std::int32_t> first,
                           const PatchLayout& layout, const std::string& what) {
     std::vector<EvolvedVertex> results(first.size());
-    std::memset(static_cast<void*>(results.data()), 0xee, results.size() * sizeof(EvolvedVertex));
+    if (!results.empty())
+      std::memset(static_cast<void*>(results.data()), 0xee, results.size() * sizeof(EvolvedVertex));
     evolve_vertices(surface, first, layout, GetParam(), results);
     int differences = 0;
     for (std::size_t i = 0; i < first.size() && differences < 3; ++i) {
