@@ -91,7 +91,7 @@ PostingPartition::PostingPartition(const std::filesystem::path& path)
 
 std::vector<std::byte> PostingPartition::read_block(std::int64_t block) const {
   const std::uint64_t first = block * kBlockBytes;
-  const std::vector<std::byte> rows =
+  std::vector<std::byte> rows =
       file_.read(first, std::min<std::uint64_t>(kBlockBytes, file_.data_bytes() - first));
   if (xxh3_64(rows) != block_hashes_[block])
     file_.refuse("block " + std::to_string(block), "its bytes do not match their checksum");

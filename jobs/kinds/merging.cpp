@@ -43,6 +43,7 @@ std::vector<std::string> keep_models_with_runs(std::vector<std::string>& models,
 
 std::vector<fs::path> run_paths(const fs::path& parts, const std::vector<std::string>& models) {
   std::vector<fs::path> runs;
+  runs.reserve(models.size());
   for (const std::string& model : models) runs.push_back(run_path(parts, model));
   return runs;
 }

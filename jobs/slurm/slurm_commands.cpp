@@ -151,7 +151,7 @@ std::string SlurmCommands::submit(const SlurmArray& array) const {
   // The output is "1234" or "1234;cluster". There may be warnings before and after it.
   std::istringstream lines(answer.text);
   for (std::string line; std::getline(lines, line);)
-    if (const std::string id = line.substr(0, line.find(';')); is_number(id)) return id;
+    if (std::string id = line.substr(0, line.find(';')); is_number(id)) return id;
   refuse(sbatch_, "told no job id", answer);
 }
 

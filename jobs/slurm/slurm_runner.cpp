@@ -60,6 +60,7 @@ SlurmRunner::~SlurmRunner() {
 void SlurmRunner::start(const std::vector<JobStart>& jobs, const Say& say) {
   say_ = say;
   std::vector<std::size_t> numbers;
+  numbers.reserve(jobs.size());
   for (const JobStart& job : jobs) numbers.push_back(job.number);
   unsettled_ = numbers.size();
   folder_ = archive_ / "slurm" / (utc_time() + '-' + std::to_string(getpid()));

@@ -61,6 +61,7 @@ void add_strongest(const std::vector<Feature>& features, FeatureKind kind, int l
   }
   if (strong.size() > static_cast<std::size_t>(parameters.most_features)) {
     std::vector<float> strengths;
+    strengths.reserve(strong.size());
     for (const OrientedFeature& one : strong) strengths.push_back(strength(one, kind));
     const auto last = strengths.begin() + parameters.most_features;
     std::ranges::nth_element(strengths, last, std::ranges::greater());

@@ -154,7 +154,7 @@ std::string to_json(const SurfaceParameters& parameters) {
 }
 
 SurfaceParameters surface_parameters_from_json(const nlohmann::json& json) {
-  const SurfaceParameters parameters = from_json(surface_parameter_table(), json);
+  SurfaceParameters parameters = from_json(surface_parameter_table(), json);
   if (json_of(parameters).dump() != json.dump())
     throw std::runtime_error("are no parameters of this version: " + json.dump());
   return parameters;

@@ -31,7 +31,8 @@ struct Bytes {
   float high;
   constexpr float step() const { return (high - low) / 255; }
   std::uint8_t of(float value) const {
-    return static_cast<std::uint8_t>(0.5 + std::clamp((value - low) / step(), 0.0F, 255.0F));
+    const double clamped = std::clamp((value - low) / step(), 0.0F, 255.0F);
+    return static_cast<std::uint8_t>(std::floor(clamped + 0.5));
   }
   /// Returns a tolerance in bytes. It is rounded down, because both values have been rounded.
   constexpr std::uint8_t tolerance(float width) const {
