@@ -76,9 +76,9 @@ class StlText {
   void read_line() {
     std::string keyword(scanner_.word());
     if (is_word(keyword, "end")) keyword += scanner_.word();  // "end loop"
+    if (passed_over(keyword)) return;
     if (is_word(keyword, "vertex")) {
       read_vertex();
-    } else if (passed_over(keyword)) {
     } else if (is_word(keyword, "facet")) {
       expect(!in_facet_);
       in_facet_ = true;

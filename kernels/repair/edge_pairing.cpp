@@ -15,7 +15,7 @@ std::int32_t start_of(const std::vector<Triangle>& triangles, std::int32_t h) {
   return triangles[face_of(h)][corner_of(h)];
 }
 
-/// One face at an edge of many, seen along the edge from its lower vertex.
+/// Describes one face at an edge of many faces, seen along the edge from its lower vertex.
 struct Leaf {
   double angle;        ///< Of the face round the edge.
   bool ends;           ///< The material lies before the face, in the sense of the angle.

@@ -20,7 +20,7 @@ struct Part {
   Eigen::AlignedBox3d box;
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< Median of each coordinate.
   double radius = 0;                                 ///< Median distance from the middle.
-  double volume = 0;  ///< Six times the enclosed volume; of a closed part only.
+  double volume = 0;  ///< Six times the enclosed volume. It means nothing for an open part.
   bool closed = true;
 };
 

@@ -38,7 +38,7 @@ struct HashCell {
   }
 };
 
-/// An edge with one face, as the face runs along it.
+/// Describes an edge with one face: its ends, in the sense of the face, and the opposite corner.
 struct OpenEdge {
   std::int32_t from, to, apex;
 };
