@@ -11,6 +11,7 @@
 #include "jobs/archive/scan_size.hpp"
 #include "jobs/plan/plan.hpp"
 #include "jobs/plan/typed_job_kind.hpp"
+#include "jobs/stages/scan_surface.hpp"
 #include "jobs/stages/surface_job.hpp"
 
 namespace semigeo::jobs {
@@ -32,15 +33,7 @@ static void each_field(SurfaceJobResult& r, const Visit& visit) {
   visit("parts", r.parts);
   visit("levels", r.levels);
   visit("vanished", r.vanished);
-  visit("welded_vertices", r.repairs.welded_vertices);
-  visit("gap_vertices", r.repairs.gap_vertices);
-  visit("degenerate_faces", r.repairs.degenerate_faces);
-  visit("duplicate_faces", r.repairs.duplicate_faces);
-  visit("flipped_faces", r.repairs.flipped_faces);
-  visit("nonmanifold_edges", r.repairs.nonmanifold_edges);
-  visit("turned_parts", r.repairs.turned_parts);
-  visit("split_vertices", r.repairs.split_vertices);
-  visit("isolated_vertices", r.repairs.isolated_vertices);
+  each_repair(r.repairs, visit);
   visit("holes_loops", r.preparation.holes.loops);
   visit("holes_filled", r.preparation.holes.filled);
   visit("holes_outer", r.preparation.holes.outer);

@@ -30,15 +30,9 @@ void check_usable(const std::filesystem::path& scan, const kernels::BuiltSurface
 }  // namespace
 
 nlohmann::json json_of(const kernels::SurfaceRepairs& repairs) {
-  return {{"degenerate_faces", repairs.degenerate_faces},
-          {"duplicate_faces", repairs.duplicate_faces},
-          {"flipped_faces", repairs.flipped_faces},
-          {"gap_vertices", repairs.gap_vertices},
-          {"isolated_vertices", repairs.isolated_vertices},
-          {"nonmanifold_edges", repairs.nonmanifold_edges},
-          {"split_vertices", repairs.split_vertices},
-          {"turned_parts", repairs.turned_parts},
-          {"welded_vertices", repairs.welded_vertices}};
+  nlohmann::json json;
+  each_repair(repairs, [&](const char* name, std::int64_t count) { json[name] = count; });
+  return json;
 }
 
 nlohmann::json json_of(const ScanRepairs& repairs) {

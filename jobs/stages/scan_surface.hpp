@@ -9,6 +9,21 @@
 
 namespace semigeo::jobs {
 
+/// Calls visit(name, count) for every count of some repairs, under its name in JSON. `Repairs` is
+/// `kernels::SurfaceRepairs`, const or not.
+template <typename Repairs, typename Visit>
+void each_repair(Repairs& repairs, const Visit& visit) {
+  visit("welded_vertices", repairs.welded_vertices);
+  visit("gap_vertices", repairs.gap_vertices);
+  visit("degenerate_faces", repairs.degenerate_faces);
+  visit("duplicate_faces", repairs.duplicate_faces);
+  visit("flipped_faces", repairs.flipped_faces);
+  visit("nonmanifold_edges", repairs.nonmanifold_edges);
+  visit("turned_parts", repairs.turned_parts);
+  visit("split_vertices", repairs.split_vertices);
+  visit("isolated_vertices", repairs.isolated_vertices);
+}
+
 /// Counts what was changed and passed over while a scan was read and repaired.
 struct ScanRepairs {
   kernels::SurfaceRepairs surface;
