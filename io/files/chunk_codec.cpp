@@ -2,6 +2,7 @@
 
 #include <libdeflate.h>
 #include <xxhash.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <bit>
@@ -158,28 +159,95 @@ std::byte* put_stored_blocks(std::span<const std::byte> bytes, std::byte* out) {
   return out;
 }
 
+// Returns how many bytes at the back of shuffled rows are planes of zeros: the high bytes of
+// numbers of vertices.
+std::size_t zeros_at_back(std::span<const std::byte> shuffled, std::size_t element_size) {
+  const std::size_t plane = shuffled.size() / element_size;
+  const auto last = std::find_if(shuffled.rbegin(), shuffled.rend(),
+                                 [](std::byte byte) { return byte != std::byte{0}; });
+  const auto zeros = static_cast<std::size_t>(last - shuffled.rbegin());
+  return plane == 0 ? 0 : zeros / plane * plane;
+}
+
+// Compresses `bytes` into blocks of a deflate stream that end at a byte, none of them the last one.
+// libdeflate can only end a stream. Returns the length, or 0 if it would be more than `most`.
+std::size_t put_open_blocks(std::span<const std::byte> bytes, std::byte* out, std::size_t most) {
+  z_stream stream = {};
+  constexpr int kRaw = -15;
+  constexpr int kMemory = 8;
+  if (deflateInit2(&stream, kFastest, Z_DEFLATED, kRaw, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
+    throw std::bad_alloc();
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(bytes.data()));
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out);
+  stream.avail_out = static_cast<uInt>(most);
+  deflate(&stream, Z_SYNC_FLUSH);
+  const bool complete = stream.avail_in == 0 && stream.avail_out > 0;
+  const std::size_t length = stream.total_out;
+  deflateEnd(&stream);
+  return complete ? length : 0;
+}
+
+constexpr std::size_t kLongestMatch = 258;
+
+// Bounds the length of put_zeros: thirteen bits for a match, and one for less than a match.
+constexpr std::size_t most_of_zeros(std::size_t count) {
+  return count / kLongestMatch * 13 / 8 + 264;
+}
+
+// Writes the last block of a deflate stream, which holds `count` zeros, with the fixed codes of
+// RFC 1951, 3.2.6: literals, and matches of the byte before.
+std::byte* put_zeros(std::size_t count, std::byte* out) {
+  std::uint64_t bits = 0;
+  int held = 0;
+  const auto put = [&](std::uint64_t code, int length) {
+    bits |= code << held;
+    for (held += length; held >= 8; held -= 8, bits >>= 8) *out++ = static_cast<std::byte>(bits);
+  };
+  // Codes are sent from their most significant bit, which is the lowest bit of these constants.
+  const auto put_literal = [&] { put(0b00001100, 8); };       // 0x30
+  const auto put_match = [&] { put(0b00000'10100011, 13); };  // 285: 258 bytes; distance 1
+  put(0b011, 3);                                              // last block, fixed codes
+  if (count > 0) {
+    put_literal();
+    --count;
+  }
+  for (; count >= kLongestMatch; count -= kLongestMatch) put_match();
+  for (; count > 0; --count) put_literal();
+  put(0, 7);  // end of block
+  put(0, 7);  // fills the last byte
+  return out;
+}
+
 // Writes `bytes` as a zlib stream (RFC 1950) to `out`, which must have room for as many bytes as
 // the input. The first `noise` bytes are stored as they are, because the compressor would spend
-// most of its time on them in vain. Returns the length of the stream, or 0 if it is not shorter
-// than the input.
+// most of its time on them in vain; the last `zeros` bytes are known to be zero. Returns the length
+// of the stream, or 0 if it is not shorter than the input.
 std::size_t zlib_stream(libdeflate_compressor* compressor, std::span<const std::byte> bytes,
-                        std::size_t noise, std::byte* out) {
+                        std::size_t noise, std::size_t zeros, std::byte* out) {
   constexpr std::size_t kHeader = 2;
   constexpr std::size_t kTrailer = 4;
   const std::size_t blocks = (noise + 0xfffe) / 0xffff;
   const std::size_t before = kHeader + noise + 5 * blocks;
-  if (before + kTrailer >= bytes.size()) return 0;
+  const std::size_t behind = kTrailer + (zeros == 0 ? 0 : most_of_zeros(zeros));
+  if (before + behind >= bytes.size()) return 0;
+  const std::size_t room = bytes.size() - 1 - before - behind;
   out[0] = std::byte{0x78};  // deflate, window of 32 KiB
   out[1] = std::byte{0x01};  // fastest level, no dictionary, check bits
-  std::byte* const packed = put_stored_blocks(bytes.first(noise), out + kHeader);
-  const std::size_t length =
-      libdeflate_deflate_compress(compressor, bytes.data() + noise, bytes.size() - noise, packed,
-                                  bytes.size() - 1 - before - kTrailer);
-  if (length == 0) return 0;
+  std::byte* end = put_stored_blocks(bytes.first(noise), out + kHeader);
+  const auto middle = bytes.subspan(noise, bytes.size() - noise - zeros);
+  if (zeros == 0 || !middle.empty()) {
+    const std::size_t length = zeros > 0 ? put_open_blocks(middle, end, room)
+                                         : libdeflate_deflate_compress(compressor, middle.data(),
+                                                                       middle.size(), end, room);
+    if (length == 0) return 0;
+    end += length;
+  }
+  if (zeros > 0) end = put_zeros(zeros, end);
   const std::uint32_t adler = libdeflate_adler32(1, bytes.data(), bytes.size());
-  for (int i = 0; i < 4; ++i)
-    packed[length + i] = static_cast<std::byte>(adler >> (24 - 8 * i) & 0xff);
-  return before + length + kTrailer;
+  for (int shift = 24; shift >= 0; shift -= 8)
+    *end++ = static_cast<std::byte>(adler >> shift & 0xff);
+  return static_cast<std::size_t>(end - out);
 }
 
 bool inflate(std::span<const std::byte> bytes, std::span<std::byte> out) {
@@ -273,7 +341,9 @@ EncodedChunk encode_rows(const ArrayShape& shape, std::span<const std::byte> row
   if (!compressor) throw std::bad_alloc();
   const std::span<const std::byte> shuffled(scratch.get(), size);
   const std::size_t noise = noise_in_front(compressor.get(), shuffled, element_size);
-  const std::size_t packed = zlib_stream(compressor.get(), shuffled, noise, scratch.get() + size);
+  const std::size_t zeros = std::min(zeros_at_back(shuffled, element_size), size - noise);
+  const std::size_t packed =
+      zlib_stream(compressor.get(), shuffled, noise, zeros, scratch.get() + size);
   if (packed > 0) {
     chunk.bytes = with_checksum({scratch.get() + size, packed});
   } else {

@@ -198,6 +198,7 @@ const std::vector<Hdf5Attribute>& Hdf5File::attributes(const std::string& object
           object, "list the attributes");
   std::ranges::sort(names);
   std::vector<Hdf5Attribute> found;
+  found.reserve(names.size());
   for (const std::string& name : names)
     found.push_back(read(open_attribute(object, name), object, name));
   return attributes_.emplace(object, std::move(found)).first->second;

@@ -21,7 +21,7 @@ template <typename Value>
 std::vector<std::byte> packed(std::span<const Value> values, std::size_t stride = sizeof(Value)) {
   std::vector<std::byte> rows(values.size() * stride);
   for (std::size_t i = 0; i < values.size(); ++i)
-    std::memcpy(rows.data() + i * stride, &values[i], stride);
+    std::memcpy(rows.data() + i * stride, static_cast<const void*>(&values[i]), stride);
   return rows;
 }
 

@@ -28,7 +28,7 @@ struct ExportOptions {
   std::string contours;  ///< A kind of contour.
 };
 
-enum class OutputFormat { ply, csv };
+enum class OutputFormat { kPly, kCsv };
 
 /// Returns the format that the extension names. A surface cannot be written as CSV.
 OutputFormat format_of(const ExportOptions& options) {
@@ -36,8 +36,8 @@ OutputFormat format_of(const ExportOptions& options) {
   std::string extension = std::filesystem::path(options.output).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
-  if (extension == ".ply") return OutputFormat::ply;
-  if (extension == ".csv" && !surface) return OutputFormat::csv;
+  if (extension == ".ply") return OutputFormat::kPly;
+  if (extension == ".csv" && !surface) return OutputFormat::kCsv;
   throw CLI::ValidationError("--output", options.output + " does not say how to write it: " +
                                              (surface ? "give a name that ends in .ply"
                                                       : "give a name that ends in .ply or .csv"));
@@ -61,7 +61,7 @@ void export_features(const io::Dataset& dataset, const ExportOptions& options,
     tables.push_back({FeatureKind(kind), features[kind]});
     count += features[kind].size();
   }
-  const auto write = format == OutputFormat::ply ? io::write_features_ply : io::write_features_csv;
+  const auto write = format == OutputFormat::kPly ? io::write_features_ply : io::write_features_csv;
   write(options.output, tables, dataset.header().origin);
   std::printf("%s: %zu features, kind = %s\n", options.output.c_str(), count,
               options.features.c_str());
@@ -72,7 +72,7 @@ void export_contours(const io::Dataset& dataset, const ExportOptions& options,
   const bool gaussian = options.contours == kFeatureKindNames[0];
   const kernels::SampledContours contours =
       dataset.read_contours(options.level, gaussian ? FeatureKind::kGaussian : FeatureKind::kMean);
-  const auto write = format == OutputFormat::ply ? io::write_contours_ply : io::write_contours_csv;
+  const auto write = format == OutputFormat::kPly ? io::write_contours_ply : io::write_contours_csv;
   write(options.output, contours, dataset.header().origin);
   std::printf("%s: %zu contours %s = 0, %zu points\n", options.output.c_str(),
               contours.closed.size(), gaussian ? "K" : "H", contours.points.size());

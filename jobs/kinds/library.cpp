@@ -40,6 +40,7 @@ namespace {
 
 std::vector<fs::path> partition_paths(const Job& job, int partitions) {
   std::vector<fs::path> paths;
+  paths.reserve(static_cast<std::size_t>(partitions));
   for (int number = 0; number < partitions; ++number)
     paths.push_back(partition_path(job.input, number));
   return paths;
@@ -133,11 +134,12 @@ const JobKind& library_kind() {
 
 Job library_job(LibraryJobData data, const fs::path& library, const fs::path& parts,
                 std::span<const std::string> run_keys) {
+  std::string key = library_key(run_keys, data.parameters);
   return {.kind = &library_kind(),
           .name = library.filename().string(),
           .input = parts,
           .output = library,
-          .key = library_key(run_keys, data.parameters),
+          .key = std::move(key),
           .data = std::move(data)};
 }
 

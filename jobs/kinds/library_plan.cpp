@@ -93,6 +93,7 @@ std::vector<LibraryModel> models_of(const fs::path& archive, const std::vector<P
              .error = plan[i].error};
   }
   std::vector<LibraryModel> list;
+  list.reserve(models.size());
   for (auto& [name, model] : models) list.push_back(std::move(model));
   return list;
 }

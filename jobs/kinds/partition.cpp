@@ -94,11 +94,12 @@ const JobKind& partition_kind() {
 Job partition_job(int number, PartitionJobData data, const fs::path& parts,
                   std::span<const std::string> run_keys) {
   const fs::path output = partition_path(parts, number);
+  std::string key = partition_key(run_keys, data.shapes);
   return {.kind = &partition_kind(),
           .name = output.filename().string(),
           .input = parts,
           .output = output,
-          .key = partition_key(run_keys, data.shapes),
+          .key = std::move(key),
           .data = std::move(data)};
 }
 

@@ -45,7 +45,8 @@ class Execution {
     while (true) {
       start_jobs();
       if (scheduler_.running() == 0 || !runner_.waits()) break;
-      std::visit([this](auto&& event) { handle(std::move(event)); }, runner_.wait());
+      std::visit([this](auto&& event) { handle(std::forward<decltype(event)>(event)); },
+                 runner_.wait());
       if (scheduler_.stopping() && !std::exchange(cancelled_waiting_, true))
         runner_.cancel_waiting();
     }

@@ -133,6 +133,7 @@ SlurmStage stage_of(const JobKind& kind, const std::vector<std::size_t>& jobs,
                    .list = folder / "tasks.jsonl",
                    .tasks = {}};
   std::vector<double> seconds;
+  seconds.reserve(jobs.size());
   for (const std::size_t job : jobs)
     seconds.push_back(inputs.estimates[job].seconds / inputs.threads);
   std::vector<std::vector<JobRequest>> requests;

@@ -34,6 +34,8 @@ class NearestWithin {
   using DistanceType = float;
   explicit NearestWithin(float squared_limit) : squared_(squared_limit) {}
   std::int64_t index() const { return index_; }
+  // nanoflann asks for these names.
+  // NOLINTBEGIN(readability-identifier-naming)
   bool addPoint(float squared, std::size_t index) {
     const auto i = static_cast<std::int64_t>(index);
     if (squared < squared_ || (squared == squared_ && i < index_)) {
@@ -43,6 +45,7 @@ class NearestWithin {
     return true;
   }
   float worstDist() const { return squared_; }
+  // NOLINTEND(readability-identifier-naming)
   bool full() const { return true; }
   std::size_t size() const { return index_ < 0 ? 0 : 1; }
 

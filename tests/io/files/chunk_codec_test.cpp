@@ -92,6 +92,22 @@ TEST_P(ChunkCodec, ZerosComeBack) {
   expect_stored(encode_array(array_of(values), GetParam()), values);
 }
 
+// Numbers of vertices: noise in the low bytes, runs in the middle, zeros in the high bytes. Lengths
+// of planes pass a match of 258 bytes by zero, one and 257.
+TEST_P(ChunkCodec, NumbersOfVerticesComeBack) {
+  for (const std::size_t count : {1032U, 1033U, 1289U, 32768U, 70001U}) {
+    std::mt19937 random(7);
+    std::vector<std::int64_t> values(count);
+    for (std::size_t i = 0; i < count; ++i)
+      values[i] = static_cast<std::int64_t>(random() & 0xffff) | (i / 300 % 5) << 16;
+    expect_stored(encode_array(array_of(values), GetParam()), values);
+    for (std::int64_t& value : values) value &= 0xffff;  // nothing between noise and zeros
+    expect_stored(encode_array(array_of(values), GetParam()), values);
+    for (std::int64_t& value : values) value &= 0xff00;  // zeros in front, too
+    expect_stored(encode_array(array_of(values), GetParam()), values);
+  }
+}
+
 TEST_P(ChunkCodec, OneRowComesBack) {
   const std::vector<float> values = {42};
   expect_stored(encode_array(array_of(values), GetParam()), values);
