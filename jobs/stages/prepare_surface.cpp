@@ -28,7 +28,7 @@ void fill(PreparedSurface& prepared, std::int64_t max_edges, const engine::RunCo
   context.workers.for_blocks(static_cast<std::int64_t>(loops.size()), 1, [&](IndexRange range) {
     for (auto i = range.begin; i < range.end; ++i)
       if (kernels::fillable(loops[i], max_edges))
-        patches[i] = kernels::make_hole_patch(surface, loops[i].vertices);
+        patches[i] = kernels::make_hole_patch(surface, loops[i]);
   });
   kernels::FilledSurface filled = kernels::insert_patches(surface, loops, patches, max_edges);
   prepared.surface = std::move(filled.surface);

@@ -8,21 +8,14 @@
 
 namespace semigeo::kernels {
 
-/// Describes a closed chain of boundary edges.
-struct BoundaryLoop {
-  std::vector<std::int32_t> vertices;  ///< In the order in which faces that fill it run.
-  std::int32_t part = 0;
-  double length = 0;   ///< Length of all edges, in the units of the points.
-  bool outer = false;  ///< Whether it is the outer boundary of an open part.
-};
-
-/// Returns all boundary loops, by part and then by lowest vertex. The longest loop of a part is its
-/// outer boundary, the end of what was scanned, if it spans the part. It does so if the magnitude
-/// of its vector area is at least a tenth of the area of the part, or if its vertices lie on
-/// average at least half as far from their centroid as those of the part from theirs. (The vector
-/// area of a flat sheet's outline is its area, that of a hemisphere's rim half of it; a round hole
-/// has a tenth when a tenth of the sphere is missing. The second rule covers sheets that are rolled
-/// up.) The cost is linear.
+/// Returns all boundary loops, by part and then by lowest vertex. Holes that touch in a vertex,
+/// which has a copy for each of its fans, are loops of their own that are joined there. The longest
+/// loop of a part is its outer boundary, the end of what was scanned, if it spans the part. It does
+/// so if the magnitude of its vector area is at least a tenth of the area of the part, or if its
+/// vertices lie on average at least half as far from their centroid as those of the part from
+/// theirs. (The vector area of a flat sheet's outline is its area, that of a hemisphere's rim half
+/// of it; a round hole has a tenth when a tenth of the sphere is missing. The second rule covers
+/// sheets that are rolled up.) The cost is linear.
 std::vector<BoundaryLoop> boundary_loops(const Surface& surface);
 
 /// Counts which boundary loops were filled, and why the others were left open.
@@ -38,7 +31,9 @@ struct HoleCounts {
 
 /// Holds a surface with filled holes.
 struct FilledSurface {
-  Surface surface;  ///< Old vertices and faces keep their indices, those of the patches follow.
+  /// Old vertices and faces come first, in their order. Copies that a patch has joined are one
+  /// vertex again.
+  Surface surface;
   std::vector<std::uint8_t> vertex_filled;  ///< (N) 1 where filling made the vertex.
   std::vector<std::uint8_t> face_filled;    ///< (F) 1 where filling made the face.
   HoleCounts counts;

@@ -36,19 +36,33 @@ constexpr std::int32_t kLongestCover = 512;
 /// Holds a boundary loop of a surface and its points.
 struct Rim {
   const Surface& surface;
-  std::span<const std::int32_t> loop;   ///< Vertices of the surface.
+  std::span<const std::int32_t> loop;  ///< Vertices of the surface.
+  std::span<const BoundaryLoop::Join> joins;
   Eigen::Vector3d origin;               ///< The points are relative to it, for precision.
   std::vector<Eigen::Vector3d> points;  ///< One for each vertex of the loop.
 
-  Rim(const Surface& s, std::span<const std::int32_t> vertices)
-      : surface(s), loop(vertices), origin(s.points[vertices[0]].cast<double>()) {
+  Rim(const Surface& s, const BoundaryLoop& boundary)
+      : surface(s),
+        loop(boundary.vertices),
+        joins(boundary.joins),
+        origin(s.points[loop[0]].cast<double>()) {
     for (const std::int32_t v : loop) points.push_back(surface.points[v].cast<double>() - origin);
   }
 
   std::int32_t size() const { return static_cast<std::int32_t>(loop.size()); }
-  /// Tells whether two places of the loop are an edge of the surface.
+  /// Tells whether an edge between two places of the loop is impossible: it exists already, also
+  /// from another copy of an end, or it would have no length.
   bool joined(std::int32_t a, std::int32_t b) const {
-    return find_edge(surface, loop[a], loop[b]) != kNone;
+    if (points[a] == points[b] || joined_to(a, loop[b])) return true;
+    return std::ranges::any_of(
+        joins, [&](const auto& join) { return join.place == b && joined_to(a, join.vertex); });
+  }
+  /// Tells whether an edge joins any copy of the vertex at a place to another vertex.
+  bool joined_to(std::int32_t place, std::int32_t vertex) const {
+    if (find_edge(surface, loop[place], vertex) != kNone) return true;
+    return std::ranges::any_of(joins, [&](const auto& join) {
+      return join.place == place && find_edge(surface, join.vertex, vertex) != kNone;
+    });
   }
   bool bounds_single_triangle() const {
     const auto face = [this](std::int32_t k) { return face_of(surface.outgoing[loop[k]]); };
@@ -341,7 +355,7 @@ HolePatch Patch::result() const {
 
 }  // namespace
 
-HolePatch make_hole_patch(const Surface& surface, std::span<const std::int32_t> loop,
+HolePatch make_hole_patch(const Surface& surface, const BoundaryLoop& loop,
                           const HolePatchOptions& options) {
   const Rim rim(surface, loop);
   std::vector<Triangle> triangles = triangulate(rim);

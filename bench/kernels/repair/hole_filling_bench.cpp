@@ -27,7 +27,7 @@ void fill(benchmark::State& state, bool refine) {
   std::size_t vertices = 0;
   for (auto _ : state)
     for (const auto& loop : loops)
-      vertices = kernels::make_hole_patch(surface, loop.vertices, options).points.size();
+      vertices = kernels::make_hole_patch(surface, loop, options).points.size();
   state.counters["loop_edges"] = static_cast<double>(loops.front().vertices.size());
   state.counters["new_vertices"] = static_cast<double>(vertices);
 }

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "kernels/repair/surface_builder.hpp"
+#include "kernels/surface/circulators.hpp"
 #include "kernels/surface/nearest_surface.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/soundness.hpp"
@@ -193,11 +194,34 @@ TEST(HoleFillingTest, HolesThatTouchInAVertexAreFilledOneByOne) {
   EXPECT_EQ(fault_of(filled.surface), "");
 }
 
+// The boundary runs round both holes, and passes each copy of the vertex once.
+TEST(HoleFillingTest, AVertexThatTwoHolesTouchBecomesOneAgain) {
+  const Surface sphere = built(shapes::icosphere(3));
+  for (std::int32_t v = 0; v < static_cast<std::int32_t>(sphere.points.size()); ++v) {
+    std::vector<std::int32_t> ring;
+    for (const std::int32_t h : outgoing(sphere, v)) ring.push_back(sphere.target(h));
+    if (ring.size() != 6) continue;
+    TriangleMesh mesh;
+    for (const auto& p : sphere.points) mesh.points.push_back(p.cast<double>());
+    mesh.triangles = sphere.triangles;
+    std::erase_if(mesh.triangles, [&](const auto& t) {
+      return std::ranges::find(t, ring[0]) != t.end() || std::ranges::find(t, ring[3]) != t.end();
+    });
+    const FilledSurface filled = fill_holes(built(std::move(mesh)), 1000);
+    EXPECT_EQ(filled.counts, counts(2, 2, 0)) << v;
+    EXPECT_EQ(fault_of(filled.surface), "");
+    EXPECT_EQ(euler_characteristic(filled.surface), 2);
+    for (const auto& t : filled.surface.triangles)
+      for (int i = 0; i < 3; ++i)
+        EXPECT_NE(filled.surface.points[t[i]], filled.surface.points[t[(i + 1) % 3]]) << v;
+  }
+}
+
 TEST(HoleFillingTest, ADiagonalThatIsAnEdgeAlreadyIsNotMadeTwice) {
   // The lower side of a square, with the diagonal 0 - 2; the upper side must get the other one.
   TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 2, 1}, {0, 3, 2}}};
   const Surface sheet = built(std::move(mesh));
-  const std::vector<std::int32_t> loop{0, 1, 2, 3};
+  const BoundaryLoop loop{.vertices = {0, 1, 2, 3}, .joins = {}};
   const HolePatch patch = make_hole_patch(sheet, loop, {.refine = false});
   ASSERT_EQ(patch.triangles.size(), 2u);
   for (const auto& t : patch.triangles) {
@@ -212,8 +236,7 @@ TEST(HoleFillingTest, SharedOutItIsTheSame) {
   });
   const auto loops = boundary_loops(open);
   std::vector<HolePatch> patches(loops.size());
-  for (std::size_t k = loops.size(); k-- > 0;)
-    patches[k] = make_hole_patch(open, loops[k].vertices);
+  for (std::size_t k = loops.size(); k-- > 0;) patches[k] = make_hole_patch(open, loops[k]);
   const FilledSurface shared = insert_patches(open, loops, patches, 1000);
   const FilledSurface whole = fill_holes(open, 1000);
   EXPECT_EQ(shared.surface.triangles, whole.surface.triangles);
