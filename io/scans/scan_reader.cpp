@@ -1,16 +1,18 @@
 #include "io/scans/scan_reader.hpp"
 
 #include <cstddef>
+#include <optional>
 #include <string_view>
 
 #include "io/files/byte_source.hpp"
 #include "io/files/error.hpp"
+#include "io/files/file_signature.hpp"
 #include "io/scans/scan_formats.hpp"
 
 namespace semigeo::io {
 namespace {
 
-constexpr std::size_t kVariantBytes = 1024;  // these many first bytes tell the variant
+constexpr std::size_t kVariantBytes = 1024;  // these many first bytes tell the variant, or the kind
 
 std::string lower_case_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -25,6 +27,16 @@ const ScanFormat* find_format(const std::filesystem::path& path) {
   for (const ScanFormat* format : kScanFormats)
     if (format->extension == extension) return format;
   return nullptr;
+}
+
+/// Throws the Error of a file that is something else than its extension says, if its first bytes
+/// show what it is.
+void refuse_other_kind(const ByteSource& source, const ScanFormat& format,
+                       const std::optional<FileSignature>& signature) {
+  if (!signature || signature->extension == format.extension) return;
+  const std::string not_scan = signature->extension.empty() ? ", not a scan" : "";
+  throw Error(source.path(), "", "the file is " + std::string(signature->what) + not_scan,
+              std::string(signature->remedy));
 }
 
 }  // namespace
@@ -59,6 +71,9 @@ Scan read_scan(const std::filesystem::path& path, const ScanLimits& limits) {
     throw Error(path, "", "its name is not that of a scan",
                 "scans are " + scan_extensions(", ", " and ") + ", and the same with .gz");
   if (!source.fill(1)) throw Error(path, "", "the file is empty", "copy it again from its source");
+  source.fill(kVariantBytes);
+  const std::optional<FileSignature> signature = file_signature(source.ahead());
+  if (signature && signature->is_zeros) refuse_other_kind(source, *format, signature);
   try {
     Scan scan = format->read(source, limits);
     scan.bytes_after_end = source.drain();
@@ -66,6 +81,7 @@ Scan read_scan(const std::filesystem::path& path, const ScanLimits& limits) {
     return scan;
   } catch (const Error&) {
     source.drain();  // throws if the gzip data is damaged, which explains the failure better
+    refuse_other_kind(source, *format, signature);
     throw;
   }
 }

@@ -1,7 +1,10 @@
 #include "jobs/archive/find_scans.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <cctype>
+#include <functional>
 #include <iterator>
 #include <set>
 #include <utility>
@@ -17,6 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kSuffixDigits = 8;
 constexpr std::size_t kMaxNameLength = 180;
+constexpr const char* kOtherKind = "other";
 
 std::string short_hash(const std::string& text) {
   return io::xxh3_of_text(text).substr(0, kSuffixDigits);
@@ -80,95 +84,174 @@ bool is_dataset(const fs::path& file) {
   return file.extension() == ".vtkhdf";
 }
 
-/// The kinds of files that are searched, and the folders that are not.
-struct Search {
-  bool datasets = false;  ///< Datasets are found as well as scans.
-  std::vector<fs::path> passed_over;
-
-  bool wants(const fs::path& file) const {
-    return io::is_scan_name(file) || (datasets && is_dataset(file));
-  }
-  bool enters(const fs::path& folder) const {
-    std::error_code ignored;
-    return std::ranges::none_of(
-        passed_over, [&](const fs::path& other) { return fs::equivalent(folder, other, ignored); });
-  }
-};
-
-/// Appends the scans of a folder to `files` and its folders to `folders`. Returns why it cannot be
-/// searched.
-std::error_code list_folder(const fs::path& folder, const Search& search,
-                            std::vector<fs::path>& files, std::vector<fs::path>& folders) {
-  std::error_code error;
-  fs::directory_iterator entry(folder, error);
-  for (const fs::directory_iterator end; !error && entry != end; entry.increment(error)) {
-    std::error_code ignored;
-    if (is_hidden(entry->path())) continue;
-    if (entry->is_directory(ignored)) {
-      if (!entry->is_symlink(ignored) && search.enters(entry->path()))
-        folders.push_back(entry->path());
-    } else if (search.wants(entry->path())) {
-      files.push_back(entry->path());
-    }
-  }
-  return error;
+/// Returns the kind of a file that is no scan.
+std::string kind_of(const fs::path& file) {
+  constexpr std::size_t kLongest = 9;
+  std::string extension = file.extension().string();
+  if (extension.size() < 2 || extension.size() > kLongest) return kOtherKind;
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const bool plain = std::all_of(extension.begin() + 1, extension.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0;
+  });
+  return plain ? extension : kOtherKind;
 }
 
-void search_folder(const fs::path& top, const Search& search, std::vector<FoundScan>& found) {
-  std::vector<fs::path> files;
-  std::vector<fs::path> folders = {top};
-  std::vector<FoundScan> unsearched;
-  while (!folders.empty()) {
-    const fs::path folder = std::move(folders.back());
-    folders.pop_back();
-    const std::error_code error = list_folder(folder, search, files, folders);
-    if (!error) continue;
-    if (folder == top) throw unsearchable(folder, error);
-    unsearched.push_back(found_scan(folder, folder.lexically_relative(top)));
-    unsearched.back().error = unsearchable(folder, error).what();
-  }
-  std::sort(files.begin(), files.end());
-  for (const fs::path& file : files)
-    found.push_back(found_scan(file, file.lexically_relative(top)));
-  std::ranges::sort(unsearched, {}, &FoundScan::input);
-  std::ranges::move(unsearched, std::back_inserter(found));
+/// The device and the inode of a folder, which are the same for every path to it.
+using FolderId = std::pair<dev_t, ino_t>;
+
+FolderId id_of(const fs::path& folder) {
+  struct stat status {};
+  if (stat(folder.c_str(), &status) != 0) return {};
+  return {status.st_dev, status.st_ino};
 }
 
-void add_file(const fs::path& file, const Search& search, std::vector<FoundScan>& found) {
-  if (!search.wants(file))
-    throw io::Error(file, "", "is not a scan that semigeo reads",
-                    "give " + io::scan_extensions(", ", " or ") + " files, also as .gz, " +
-                        (search.datasets ? "datasets (.vtkhdf), " : "") + "or folders of them");
-  found.push_back(found_scan(file, file.filename()));
-}
+/// Searches inputs for scans.
+class Search {
+ public:
+  /// `datasets` are found as well as scans if asked for. Folders in `passed_over` are not searched.
+  Search(bool datasets, std::vector<fs::path> passed_over)
+      : datasets_(datasets), passed_over_(std::move(passed_over)) {}
 
-std::vector<FoundScan> find(const std::vector<fs::path>& inputs, const Search& search) {
-  std::vector<FoundScan> found;
-  for (const fs::path& input : inputs) {
+  void add_input(const fs::path& input) {
     std::error_code error;
     const fs::file_status status = fs::status(input, error);
     if (!fs::exists(status)) throw io::Error(input, "", "no such file or folder", "check the path");
     if (fs::is_directory(status)) {
-      search_folder(input, search, found);
+      search_folder(input);
     } else {
-      add_file(input, search, found);
+      add_file(input);
     }
   }
 
-  std::set<fs::path> seen;
-  std::erase_if(found, [&](const FoundScan& scan) { return !seen.insert(scan.file).second; });
-  return found;
+  FoundScans found() && {
+    std::set<fs::path> seen;
+    std::erase_if(found_.scans,
+                  [&](const FoundScan& scan) { return !seen.insert(scan.file).second; });
+    return std::move(found_);
+  }
+
+ private:
+  /// The state of the search of one input.
+  struct Folder {
+    fs::path top;
+    std::vector<fs::path> files;
+    std::vector<fs::path> folders;  // to be searched, without links
+    std::set<fs::path> links;       // to folders
+    std::set<FolderId> searched;
+    std::vector<FoundScan> unsearched;
+  };
+
+  bool wants(const fs::path& file) const {
+    return io::is_scan_name(file) || (datasets_ && is_dataset(file));
+  }
+  bool enters(const fs::path& folder) const {
+    std::error_code ignored;
+    return std::ranges::none_of(passed_over_, [&](const fs::path& other) {
+      return fs::equivalent(folder, other, ignored);
+    });
+  }
+
+  void add_file(const fs::path& file) {
+    if (!wants(file))
+      throw io::Error(file, "", "is not a scan that semigeo reads",
+                      "give " + io::scan_extensions(", ", " or ") + " files, also as .gz, " +
+                          (datasets_ ? "datasets (.vtkhdf), " : "") + "or folders of them");
+    found_.scans.push_back(found_scan(file, file.filename()));
+  }
+
+  void add_entry(Folder& search, const fs::directory_entry& entry, bool counts) {
+    std::error_code ignored;
+    if (entry.is_directory(ignored)) {
+      if (!enters(entry.path())) return;
+      if (entry.is_symlink(ignored)) {
+        search.links.insert(entry.path());
+      } else {
+        search.folders.push_back(entry.path());
+      }
+    } else if (wants(entry.path())) {
+      search.files.push_back(entry.path());
+    } else if (counts) {
+      ++found_.passed_over.files[kind_of(entry.path())];
+    }
+  }
+
+  /// Adds what is in a folder, unless it was searched before.
+  void list_folder(Folder& search, const fs::path& folder) {
+    const FolderId id = id_of(folder);
+    if (!search.searched.insert(id).second) return;
+    const bool counts = counted_.insert(id).second;  // not if another input was or held the folder
+    std::error_code error;
+    std::vector<fs::directory_entry> entries;
+    fs::directory_iterator entry(folder, error);
+    for (const fs::directory_iterator end; !error && entry != end; entry.increment(error))
+      if (!is_hidden(entry->path())) entries.push_back(*entry);
+    std::ranges::sort(entries);
+    for (const fs::directory_entry& each : entries) add_entry(search, each, counts);
+    if (!error) return;
+    if (folder == search.top) throw unsearchable(folder, error);
+    search.unsearched.push_back(found_scan(folder, folder.lexically_relative(search.top)));
+    search.unsearched.back().error = unsearchable(folder, error).what();
+  }
+
+  void search_folder(const fs::path& top) {
+    Folder search;
+    search.top = top;
+    search.folders = {top};
+    while (!search.folders.empty() || !search.links.empty()) {
+      if (search.folders.empty())
+        search.folders.push_back(search.links.extract(search.links.begin()).value());
+      const fs::path folder = std::move(search.folders.back());
+      search.folders.pop_back();
+      list_folder(search, folder);
+    }
+    std::ranges::sort(search.files);
+    for (const fs::path& file : search.files)
+      found_.scans.push_back(found_scan(file, file.lexically_relative(top)));
+    std::ranges::sort(search.unsearched, {}, &FoundScan::input);
+    std::ranges::move(search.unsearched, std::back_inserter(found_.scans));
+  }
+
+  bool datasets_;
+  std::vector<fs::path> passed_over_;
+  std::set<FolderId> counted_;
+  FoundScans found_;
+};
+
+FoundScans find(const std::vector<fs::path>& inputs, Search search) {
+  for (const fs::path& input : inputs) search.add_input(input);
+  return std::move(search).found();
 }
 
 }  // namespace
 
-std::vector<FoundScan> find_scans(const std::vector<fs::path>& inputs, const fs::path& archive) {
-  return find(inputs, {.passed_over = {archive}});
+std::string in_words(const PassedOver& passed_over) {
+  constexpr std::size_t kMostKinds = 20;
+  std::vector<std::pair<std::string, std::int64_t>> kinds;
+  std::int64_t others = 0;
+  for (const auto& [kind, count] : passed_over.files) {
+    if (kind == kOtherKind) {
+      others += count;
+    } else {
+      kinds.emplace_back(kind, count);
+    }
+  }
+  std::ranges::stable_sort(kinds, std::ranges::greater{},
+                           [](const auto& kind) { return kind.second; });
+  for (; kinds.size() > kMostKinds; kinds.pop_back()) others += kinds.back().second;
+  if (others > 0) kinds.emplace_back(kOtherKind, others);
+  std::string text;
+  for (const auto& [kind, count] : kinds)
+    text += (text.empty() ? "" : ", ") + std::to_string(count) + ' ' + kind;
+  return text;
 }
 
-std::vector<FoundScan> find_scenes(const std::vector<fs::path>& inputs,
-                                   const std::vector<fs::path>& passed_over) {
-  return find(inputs, {.datasets = true, .passed_over = passed_over});
+FoundScans find_scans(const std::vector<fs::path>& inputs, const fs::path& archive) {
+  return find(inputs, Search(false, {archive}));
+}
+
+FoundScans find_scenes(const std::vector<fs::path>& inputs,
+                       const std::vector<fs::path>& passed_over) {
+  return find(inputs, Search(true, passed_over));
 }
 
 }  // namespace semigeo::jobs

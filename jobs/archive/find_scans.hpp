@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,20 +17,39 @@ struct FoundScan {
   std::string error;           ///< Why the folder cannot be searched; empty for a scan.
 };
 
+/// The files that a search of folders has passed over because they are no scans.
+struct PassedOver {
+  /// The number of files of each kind. A kind is an extension in lower case (".jpg"), or "other".
+  std::map<std::string, std::int64_t> files;
+};
+
+/// Returns "12 .jpg, 3 .mtl, 2 other", the most frequent kind first, or an empty text. The kinds
+/// behind the first twenty are "other", too.
+std::string in_words(const PassedOver& passed_over);
+
+/// What a search has found.
+struct FoundScans {
+  std::vector<FoundScan> scans;
+  PassedOver passed_over;
+};
+
 /// Returns the scans that the inputs name, in a fixed order: inputs as given, and the content of
-/// folders, searched recursively, by name. Hidden files and folders, symbolic links to folders and
-/// the archive itself are passed over. A name is the path relative to the folder in which the scan
-/// was found. Folders are joined by "__", and anything but letters, digits, '.', '-' and '_' is
-/// replaced; names that could be misread end in a hash of the path. The name depends on that path
-/// alone. Throws io::Error if an input does not exist, cannot be searched, or is a file that is no
-/// scan.
-std::vector<FoundScan> find_scans(const std::vector<std::filesystem::path>& inputs,
-                                  const std::filesystem::path& archive);
+/// folders, searched recursively, by name. Symbolic links to folders are followed. A folder that
+/// can be reached in several ways is searched once: by the way without links if there is one,
+/// otherwise by the link that comes first by name. A file is found once, under the first of its
+/// names. Hidden files and folders and the archive itself are passed over and not counted.
+///
+/// A name is the path relative to the folder in which the scan was found. Folders are joined by
+/// "__", and anything but letters, digits, '.', '-' and '_' is replaced; names that could be
+/// misread end in a hash of the path. The name depends on that path alone. Throws io::Error if an
+/// input does not exist, cannot be searched, or is a file that is no scan.
+FoundScans find_scans(const std::vector<std::filesystem::path>& inputs,
+                      const std::filesystem::path& archive);
 
 /// Returns the scans and datasets (.vtkhdf) in which objects are searched, in the same order and
 /// with the same names as `find_scans`. The folders in `passed_over` are not searched, unless they
 /// are inputs themselves.
-std::vector<FoundScan> find_scenes(const std::vector<std::filesystem::path>& inputs,
-                                   const std::vector<std::filesystem::path>& passed_over);
+FoundScans find_scenes(const std::vector<std::filesystem::path>& inputs,
+                       const std::vector<std::filesystem::path>& passed_over);
 
 }  // namespace semigeo::jobs

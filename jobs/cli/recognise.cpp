@@ -43,7 +43,7 @@ void complete(RecogniseOptions& options) {
 
 /// Finds the scenes. It does not search the folders of the library and the output, unless they are
 /// inputs themselves, because their datasets are the models.
-std::vector<FoundScan> scenes_of(const RecogniseOptions& options, const SearchedLibrary& library) {
+FoundScans scenes_of(const RecogniseOptions& options, const SearchedLibrary& library) {
   std::vector<fs::path> passed_over = {library.path.parent_path()};
   if (!options.output.empty()) passed_over.emplace_back(options.output);
   return find_scenes(options.inputs, passed_over);
@@ -51,14 +51,14 @@ std::vector<FoundScan> scenes_of(const RecogniseOptions& options, const Searched
 
 int recognise(RecogniseOptions& options) {
   const SearchedLibrary library = searched_library(options.library);
-  std::vector<FoundScan> scenes;
+  FoundScans scenes;
   try {
     scenes = scenes_of(options, library);
   } catch (const io::Error& e) {
     std::fprintf(stderr, "semigeo: %s\n", e.what());
     return kUsage;
   }
-  if (scenes.empty()) {
+  if (scenes.scans.empty()) {
     std::fprintf(stderr,
                  "semigeo: no scan (%s, or .gz of one) and no dataset (.vtkhdf) was found\n",
                  io::scan_extensions(", ", " or ").c_str());
@@ -67,13 +67,14 @@ int recognise(RecogniseOptions& options) {
   std::optional<TemporaryFolder> temporary;
   if (options.output.empty()) temporary.emplace();
   const fs::path folder = temporary ? temporary->path() : fs::path(options.output);
-  const RecogniseReport report = {.top = options.top, .has_files = !temporary};
+  const RecogniseReport report = {
+      .top = options.top, .has_files = !temporary, .passed_over = scenes.passed_over};
   return run_plan(
       options.execution,
       {.home = folder,
        .plan =
            [&](DigestCache&) {
-             return plan_recognition(scenes, library, options.search, folder,
+             return plan_recognition(scenes.scans, library, options.search, folder,
                                      options.execution.limits.threads);
            },
        .prepare = [&](const std::vector<PlannedJob>& plan) { record_scenes(folder, plan); },
@@ -83,7 +84,8 @@ int recognise(RecogniseOptions& options) {
            [&](const RunResult& result) {
              const auto print = options.execution.json ? print_recognised_json : print_recognised;
              print(result, library, report);
-           }});
+           },
+       .passed_over = scenes.passed_over});
 }
 
 void add_options(CLI::App* command, RecogniseOptions& options) {

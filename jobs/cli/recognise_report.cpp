@@ -6,6 +6,7 @@
 #include <string>
 
 #include "jobs/cli/json_output.hpp"
+#include "jobs/cli/run_report.hpp"
 #include "jobs/stages/recognised_file.hpp"
 
 namespace semigeo::jobs::cli {
@@ -119,6 +120,7 @@ void print_recognised(const RunResult& result, const SearchedLibrary& library,
   }
   for (const JobOutcome& outcome : outcomes)
     if (outcome.state == JobState::kFailed) std::printf("failed: %s\n", outcome.error.c_str());
+  print_passed_over(report.passed_over);
   const auto done = static_cast<std::size_t>(std::ranges::count_if(outcomes, has_file));
   std::printf(
       "%s, %s: %zu with objects, %zu without, %lld failed%s; %.2f s wall, %.2f s CPU, "
@@ -156,6 +158,7 @@ void print_recognised_json(const RunResult& result, const SearchedLibrary& libra
     }
     document["scenes"].push_back(std::move(scene));
   }
+  add_passed_over(document, report.passed_over);
   print_document(document);
 }
 

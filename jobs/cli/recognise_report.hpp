@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "jobs/archive/find_scans.hpp"
 #include "jobs/kinds/recognise_plan.hpp"
 #include "jobs/run/run.hpp"
 
@@ -9,8 +10,9 @@ namespace semigeo::jobs::cli {
 
 /// Says how much of the results is printed.
 struct RecogniseReport {
-  std::size_t top = 5;    ///< Number of models of each ranking.
-  bool has_files = true;  ///< The files are kept, so their paths are printed.
+  std::size_t top = 5;     ///< Number of models of each ranking.
+  bool has_files = true;   ///< The files are kept, so their paths are printed.
+  PassedOver passed_over;  ///< Files that are no scenes.
 };
 
 /// Prints on stdout for each scene its objects with their poses and the first models of the

@@ -50,25 +50,27 @@ std::vector<PlannedJob> make_plan(const RunOptions& options, const std::vector<F
 }
 
 int find_and_run(const RunOptions& options, const std::string& effective_config) {
-  std::vector<FoundScan> scans;
+  FoundScans found;
   try {
-    scans = find_scans(options.inputs, options.archive);
+    found = find_scans(options.inputs, options.archive);
   } catch (const io::Error& e) {
     std::fprintf(stderr, "semigeo: %s\n", e.what());
     return kUsage;
   }
-  if (scans.empty()) {
+  if (found.scans.empty()) {
     std::fprintf(stderr, "semigeo: no %s file (or .gz of one) was found\n",
                  io::scan_extensions(", ", " or ").c_str());
     return kUsage;
   }
-  return run_plan(options.execution,
-                  {.home = options.archive,
-                   .plan = [&](DigestCache& cache) { return make_plan(options, scans, cache); },
-                   .prepare =
-                       [&](const std::vector<PlannedJob>& plan) {
-                         prepare_archive(options.archive, effective_config, plan);
-                       }});
+  return run_plan(
+      options.execution,
+      {.home = options.archive,
+       .plan = [&](DigestCache& cache) { return make_plan(options, found.scans, cache); },
+       .prepare =
+           [&](const std::vector<PlannedJob>& plan) {
+             prepare_archive(options.archive, effective_config, plan);
+           },
+       .passed_over = found.passed_over});
 }
 
 void add_options(CLI::App* command, RunOptions& options) {

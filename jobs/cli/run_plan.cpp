@@ -27,7 +27,7 @@ int dry_run(const ExecutionOptions& options, const PlanSource& source) {
     std::fputs((options.graph == GraphFormat::kDot ? to_dot(graph) : to_json(graph)).c_str(),
                stdout);
   } else {
-    print_plan(plan, options.json, options.explain);
+    print_plan(plan, options.json, options.explain, source.passed_over);
   }
   return std::ranges::all_of(plan, is_readable) ? kAllDone : kSomeFailed;
 }
@@ -79,9 +79,9 @@ int print_results(const ExecutionOptions& options, const PlanSource& source,
   if (source.print) {
     source.print(result);
   } else if (options.json) {
-    print_json(result);
+    print_json(result, source.passed_over);
   } else {
-    print_text(result);
+    print_text(result, source.passed_over);
   }
   if (result.summary.not_run > 0) return kStoppedEarly;
   return result.summary.failed == 0 ? kAllDone : kSomeFailed;

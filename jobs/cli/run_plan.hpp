@@ -23,6 +23,8 @@ struct PlanSource {
   bool is_kept = true;     ///< The folder is kept; otherwise it gets neither lock nor journal.
   /// Prints the results instead of the report of a run.
   std::function<void(const RunResult&)> print = {};
+  /// The files that the search for scans has passed over, for the report.
+  PassedOver passed_over = {};
 };
 
 /// Makes the plan and runs it, or says which jobs would run. Prints results and returns an exit

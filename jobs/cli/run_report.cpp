@@ -80,7 +80,17 @@ void print_counts(const std::vector<const PlannedJob*>& plan) {
 
 }  // namespace
 
-void print_plan(const std::vector<PlannedJob>& plan, bool json, bool explain) {
+void print_passed_over(const PassedOver& passed_over) {
+  const std::string words = in_words(passed_over);
+  if (!words.empty()) std::printf("passed over: %s\n", words.c_str());
+}
+
+void add_passed_over(nlohmann::json& document, const PassedOver& passed_over) {
+  if (!passed_over.files.empty()) document["passed_over"] = passed_over.files;
+}
+
+void print_plan(const std::vector<PlannedJob>& plan, bool json, bool explain,
+                const PassedOver& passed_over) {
   if (json) {
     nlohmann::json document = {{"scans", nlohmann::json::array()}};
     for (const PlannedJob& p : plan) {
@@ -90,6 +100,7 @@ void print_plan(const std::vector<PlannedJob>& plan, bool json, bool explain) {
       if (!p.error.empty()) entry["error"] = p.error;
       add_to(document, p, std::move(entry));
     }
+    add_passed_over(document, passed_over);
     print_document(document);
     return;
   }
@@ -104,11 +115,12 @@ void print_plan(const std::vector<PlannedJob>& plan, bool json, bool explain) {
     if (!explain) continue;
     for (const Reason& reason : p.reasons) std::printf("    %s\n", in_words(reason).c_str());
   }
+  print_passed_over(passed_over);
   if (!scans.empty()) print_counts(scans);
   if (!others.empty()) print_counts(others);
 }
 
-void print_json(const RunResult& result) {
+void print_json(const RunResult& result, const PassedOver& passed_over) {
   const RunSummary& summary = result.summary;
   nlohmann::json document = {{"scans", nlohmann::json::array()},
                              {"done", summary.done},
@@ -121,6 +133,7 @@ void print_json(const RunResult& result) {
                              {"wall_seconds", summary.wall_seconds},
                              {"cpu_seconds", summary.cpu_seconds},
                              {"peak_memory_bytes", summary.peak_bytes}};
+  add_passed_over(document, passed_over);
   for (std::size_t i = 0; i < result.plan.size(); ++i) {
     const Job& job = result.plan[i].job;
     const JobOutcome& outcome = result.outcomes[i];
@@ -138,7 +151,7 @@ void print_json(const RunResult& result) {
   print_document(document);
 }
 
-void print_text(const RunResult& result) {
+void print_text(const RunResult& result, const PassedOver& passed_over) {
   for (const JobKind* kind : kinds_of(result.plan)) print_reports(result, *kind);
   for (const JobOutcome& outcome : result.outcomes)
     if (outcome.state == JobState::kFailed) std::printf("failed: %s\n", outcome.error.c_str());
@@ -147,6 +160,7 @@ void print_text(const RunResult& result) {
     if (const auto told = job.kind->summary(job, result.outcomes[i].state))
       std::printf("%s\n", told->text.c_str());
   }
+  print_passed_over(passed_over);
   const RunSummary& summary = result.summary;
   const std::string rate =
       summary.vertex_levels > 0 ? short_number(summary.rate()) + " vertex levels/s; " : "";

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <vector>
 
+#include "jobs/archive/find_scans.hpp"
 #include "jobs/plan/plan.hpp"
 #include "jobs/run/run.hpp"
 #include "jobs/slurm/slurm_runner.hpp"
@@ -9,15 +11,22 @@
 namespace semigeo::jobs::cli {
 
 /// Prints on stdout which jobs would run, and why, as JSON or as text. In text `explain` adds a
-/// line for each difference; JSON always has them.
-void print_plan(const std::vector<PlannedJob>& plan, bool json, bool explain);
+/// line for each difference; JSON always has them. `passed_over` are files that are no scans.
+void print_plan(const std::vector<PlannedJob>& plan, bool json, bool explain,
+                const PassedOver& passed_over = {});
 
 /// Prints on stdout what a run has done, as one JSON document.
-void print_json(const RunResult& result);
+void print_json(const RunResult& result, const PassedOver& passed_over = {});
 
 /// Prints on stdout what a run has done as text: a line for each report of a job, then the
-/// failures, the summary of a library, and the totals.
-void print_text(const RunResult& result);
+/// failures, the summary of a library, the files that were passed over, and the totals.
+void print_text(const RunResult& result, const PassedOver& passed_over = {});
+
+/// Prints on stdout the files that were passed over as text, if there are any.
+void print_passed_over(const PassedOver& passed_over);
+
+/// Adds the files that were passed over to a document, if there are any.
+void add_passed_over(nlohmann::json& document, const PassedOver& passed_over);
 
 /// Prints on stdout the ids of the jobs of Slurm for which the program does not wait, a line each
 /// or as JSON.

@@ -26,6 +26,11 @@ def bad_scans():
     wrong_index[1][5, 2] = 162
     return [
         ("empty.ply", b"", "empty"),
+        ("pointer.ply", b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n", "git lfs pull"),
+        ("page.obj", b"<!DOCTYPE html><html><body>Not found</body></html>", "web page"),
+        ("photo.stl", b"\xff\xd8\xff\xe0" + bytes(range(256)) * 20, "JPEG"),
+        ("notepad.obj", obj_text(sphere).encode("utf-16"), "UTF-16"),
+        ("zeros.stl", bytes(84 + 50 * 20), "zeros"),
         ("empty.stl", b"", "empty"),
         ("text.ply", b"Dear colleague,\nplease find the scan attached.\n", "PLY"),
         ("truncated.ply", whole[:len(whole) // 2], "end"),
@@ -52,11 +57,15 @@ class BadScansTest(SemigeoTest):
         os.symlink("circle.ply", self.scans / "circle.ply")
         os.symlink("nowhere", self.scans / "dangling.ply")
         os.mkfifo(self.scans / "pipe.ply")
+        os.symlink(".", self.scans / "loop")
+        for name in ("a.jpg", "b.jpg", "a.mtl"):
+            (self.scans / name).touch()
         cases = bad_scans() + [("circle.ply", b"", "symbolic"), ("dangling.ply", b"", "no such"),
                                ("pipe.ply", b"", "regular")]
 
         document = self.run_scans("--levels", 2, code=1)
         self.assertEqual((document["done"], document["failed"]), (3, len(cases)))
+        self.assertEqual(document["passed_over"], {".jpg": 2, ".mtl": 1})
         by_name = {scan["input"]: scan for scan in document["scans"]}
         for name, _, word in cases:
             with self.subTest(scan=name):
@@ -75,6 +84,7 @@ class BadScansTest(SemigeoTest):
         process = self.semigeo("run", self.scans, "--output", self.archive, "--levels", 2, code=1)
         lines = process.stdout.splitlines()
         self.assertEqual(sum(line.startswith("failed: ") for line in lines), len(cases))
+        self.assertEqual(lines[-2], "passed over: 2 .jpg, 1 .mtl")
         self.assertIn(f"0 done, 3 up to date, {len(cases)} failed", lines[-1])
 
     def test_names_that_are_no_utf8(self):

@@ -229,7 +229,8 @@ class RunTest(SemigeoTest):
         self.assertEqual(lines[-1], "")  # erased
         self.assertNotIn("\n", shown)
         self.assertNotIn("\x1b[3", shown)  # no colour
-        self.assertEqual(len(process.stdout.splitlines()), 2)
+        lines = process.stdout.splitlines()
+        self.assertEqual((len(lines), lines[1]), (3, "passed over: 1 .txt"))
 
 
 class InfoTest(SemigeoTest):

@@ -22,7 +22,7 @@ struct ScansToRun {
 /// Plans the surface jobs of all scans, without the help of a cache.
 inline std::vector<jobs::PlannedJob> plan_scans(const ScansToRun& scans) {
   jobs::DigestCache nothing(scans.archive);
-  return jobs::plan_surfaces(scans.archive, jobs::find_scans(scans.inputs, scans.archive),
+  return jobs::plan_surfaces(scans.archive, jobs::find_scans(scans.inputs, scans.archive).scans,
                              scans.surface, nothing, scans.threads);
 }
 

@@ -24,7 +24,7 @@ class FindScansTest : public testing::Test {
     return folder_ / file;
   }
   std::vector<FoundScan> find(const std::vector<fs::path>& inputs) {
-    return find_scans(inputs, folder_ / "archive");
+    return find_scans(inputs, folder_ / "archive").scans;
   }
   std::vector<std::string> names(const std::vector<fs::path>& inputs) {
     std::vector<std::string> result;
@@ -44,7 +44,7 @@ TEST_F(FindScansTest, ScenesMayBeDatasets) {
   const fs::path archive = add("scenes/archive/scans/c.ply.vtkhdf").parent_path().parent_path();
   const auto scenes = [&](const fs::path& input) {
     Names result;
-    for (const FoundScan& scene : find_scenes({input}, {folder_ / "other", archive}))
+    for (const FoundScan& scene : find_scenes({input}, {folder_ / "other", archive}).scans)
       result.push_back(scene.name);
     return result;
   };
@@ -75,7 +75,7 @@ TEST_F(FindScansTest, PassesOverHiddenThingsAndTheArchive) {
   add("archive/scans/e.ply");
   EXPECT_EQ(names({folder_ / "in"}), Names{"a.ply"});
   EXPECT_EQ(names({folder_.path()}), Names{"in__a.ply"});
-  EXPECT_EQ(find_scans({folder_.path()}, folder_ / "in" / ".." / "archive").size(), 1u);
+  EXPECT_EQ(find_scans({folder_.path()}, folder_ / "in" / ".." / "archive").scans.size(), 1u);
 }
 
 TEST_F(FindScansTest, FoldersMayBeNamedLikeScans) {
@@ -83,14 +83,56 @@ TEST_F(FindScansTest, FoldersMayBeNamedLikeScans) {
   EXPECT_EQ(names({folder_ / "in"}), Names{"folder.ply__a.ply"});
 }
 
-TEST_F(FindScansTest, LinksToFoldersAreNotFollowed) {
+TEST_F(FindScansTest, LinksToFoldersAreFollowedOnce) {
   add("in/a/x.ply");
   add("elsewhere/y.ply");
+  add("elsewhere/deep/z.ply");
   fs::create_directory_symlink(folder_ / "in", folder_ / "in/a/up");
+  fs::create_directory_symlink(".", folder_ / "in/same");
   fs::create_directory_symlink(folder_ / "elsewhere", folder_ / "in/there");
-  EXPECT_EQ(names({folder_ / "in"}), Names{"a__x.ply"});
-  // A link that the user names is meant.
-  EXPECT_EQ(names({folder_ / "in/there"}), Names{"y.ply"});
+  fs::create_directory_symlink(folder_ / "in/there", folder_ / "elsewhere/here");
+  EXPECT_EQ(names({folder_ / "in"}), (Names{"a__x.ply", "there__deep__z.ply", "there__y.ply"}));
+  EXPECT_EQ(names({folder_ / "in/there"}), (Names{"deep__z.ply", "y.ply"}));
+}
+
+/// The way without links wins, however deep it is, and then the first link by name.
+TEST_F(FindScansTest, AFolderWithSeveralWaysHasTheNameOfTheFirst) {
+  add("in/z/real/x.ply");
+  add("elsewhere/y/y.ply");
+  fs::create_directory_symlink(folder_ / "in/z/real", folder_ / "in/a_link");
+  fs::create_directory_symlink(folder_ / "elsewhere", folder_ / "in/n");
+  fs::create_directory_symlink(folder_ / "elsewhere/y", folder_ / "in/m");
+  EXPECT_EQ(names({folder_ / "in"}), (Names{"m__y.ply", "z__real__x.ply"}));
+}
+
+TEST_F(FindScansTest, ALinkToTheArchiveIsNotFollowed) {
+  add("in/a.ply");
+  add("archive/scans/e.ply");
+  fs::create_directory_symlink(folder_ / "archive", folder_ / "in/results");
+  EXPECT_EQ(names({folder_ / "in"}), Names{"a.ply"});
+}
+
+TEST_F(FindScansTest, CountsWhatItPassesOver) {
+  for (const char* file : {"in/a.ply", "in/a.jpg", "in/b/b.JPG", "in/b/c.jpg", "in/b/c.mtl",
+                           "in/README", "in/x.a file", "in/.hidden.jpg", "in/.git/x.jpg"})
+    add(file);
+  fs::create_directory_symlink(folder_ / "in/b", folder_ / "in/link");
+  for (const auto& inputs : {std::vector<fs::path>{folder_ / "in"},
+                             {folder_ / "in", folder_ / "in/b", folder_ / "in/a.ply"}}) {
+    const PassedOver passed_over = find_scans(inputs, folder_ / "archive").passed_over;
+    EXPECT_EQ(passed_over.files,
+              (std::map<std::string, std::int64_t>{{".jpg", 3}, {".mtl", 1}, {"other", 2}}));
+    EXPECT_EQ(in_words(passed_over), "3 .jpg, 1 .mtl, 2 other");
+  }
+  EXPECT_EQ(in_words({}), "");
+}
+
+TEST(PassedOverTest, NamesTheMostFrequentKinds) {
+  PassedOver passed_over;
+  for (int i = 0; i < 30; ++i) passed_over.files["." + std::to_string(100 + i)] = i < 10 ? 1 : 2;
+  const std::string words = in_words(passed_over);
+  EXPECT_TRUE(words.starts_with("2 .110, 2 .111, ")) << words;
+  EXPECT_TRUE(words.ends_with("2 .129, 10 other")) << words;
 }
 
 TEST_F(FindScansTest, LinksToScansAreScansOnce) {

@@ -145,7 +145,7 @@ TEST_F(SurfacePlanTest, AProgramThatComputedSomethingElseIsToldFromOtherParamete
 
 TEST_F(SurfacePlanTest, ACacheChangesNothingButTheReading) {
   run_all();
-  const auto scans = find_scans(config_.inputs, config_.archive);
+  const auto scans = find_scans(config_.inputs, config_.archive).scans;
   const auto with_cache = [&] {
     DigestCache cache = DigestCache::read(config_.archive, [] {
       return DigestCache::system_clock() + std::int64_t{3600} * 1'000'000'000;
