@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -6,6 +5,7 @@
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/datasets.hpp"
 #include "jobs/cli/json_output.hpp"
+#include "jobs/cli/output.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {
@@ -26,14 +26,14 @@ int check(const CheckOptions& options) {
     if (!ok) {
       ++broken;
       entry["error"] = problems[i];
-      if (!options.json) std::printf("broken: %s\n", problems[i].c_str());
+      if (!options.json) print("broken: ", problems[i], "\n");
     }
     files.push_back(std::move(entry));
   }
   if (options.json) {
     print_document({{"files", files}, {"broken", broken}});
   } else {
-    std::printf("%zu checked, %d broken\n", files.size(), broken);
+    print(files.size(), " checked, ", broken, " broken\n");
   }
   return broken == 0 ? kAllDone : kSomeFailed;
 }

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cctype>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "io/scans/feature_writer.hpp"
 #include "io/scans/mesh_writer.hpp"
 #include "jobs/cli/command.hpp"
+#include "jobs/cli/output.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {
@@ -63,8 +63,7 @@ void export_features(const io::Dataset& dataset, const ExportOptions& options,
   }
   const auto write = format == OutputFormat::kPly ? io::write_features_ply : io::write_features_csv;
   write(options.output, tables, dataset.header().origin);
-  std::printf("%s: %zu features, kind = %s\n", options.output.c_str(), count,
-              options.features.c_str());
+  print(options.output, ": ", count, " features, kind = ", options.features, "\n");
 }
 
 void export_contours(const io::Dataset& dataset, const ExportOptions& options,
@@ -74,8 +73,8 @@ void export_contours(const io::Dataset& dataset, const ExportOptions& options,
       dataset.read_contours(options.level, gaussian ? FeatureKind::kGaussian : FeatureKind::kMean);
   const auto write = format == OutputFormat::kPly ? io::write_contours_ply : io::write_contours_csv;
   write(options.output, contours, dataset.header().origin);
-  std::printf("%s: %zu contours %s = 0, %zu points\n", options.output.c_str(),
-              contours.closed.size(), gaussian ? "K" : "H", contours.points.size());
+  print(options.output, ": ", contours.closed.size(), " contours ", gaussian ? "K" : "H", " = 0, ",
+        contours.points.size(), " points\n");
 }
 
 void export_surface(const io::Dataset& dataset, const ExportOptions& options) {
@@ -95,8 +94,8 @@ void export_surface(const io::Dataset& dataset, const ExportOptions& options) {
   mesh.scalars = {{"gaussian_curvature", gaussian}, {"mean_curvature", mean}, {"quality", quality}};
   mesh.origin = dataset.header().origin;
   io::write_ply(options.output, mesh);
-  std::printf("%s: %zu vertices, %zu triangles, quality = %s\n", options.output.c_str(),
-              points.size() / 3, triangles.size() / 3, options.quality.c_str());
+  print(options.output, ": ", points.size() / 3, " vertices, ", triangles.size() / 3,
+        " triangles, quality = ", options.quality, "\n");
 }
 
 int export_level(const ExportOptions& options) {

@@ -1,7 +1,9 @@
 #include <algorithm>
-#include <cstdio>
+#include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/dataset/dataset.hpp"
@@ -10,6 +12,7 @@
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/datasets.hpp"
 #include "jobs/cli/json_output.hpp"
+#include "jobs/cli/output.hpp"
 #include "jobs/stages/surface_job.hpp"
 
 namespace semigeo::jobs::cli {
@@ -115,56 +118,78 @@ std::string remeshing_in_words(const nlohmann::json& counts) {
   return text;
 }
 
+using Rows = std::vector<std::vector<std::string>>;
+
+std::string whole(const nlohmann::json& number) {
+  return std::to_string(number.get<std::int64_t>());
+}
+
+std::string real(const nlohmann::json& number) {
+  return io::number_text(number.get<double>());
+}
+
+/// Returns a number that the dataset holds as a float.
+std::string small_real(const nlohmann::json& number) {
+  return io::number_text(number.get<float>());
+}
+
+std::string from_to(const nlohmann::json& range) {
+  return small_real(range[0]) + " .. " + small_real(range[1]);
+}
+
+void print_levels(const nlohmann::json& d) {
+  Rows rows = {{"level", "scale", "vertices", "triangles", "parts", "K from .. to", "H from .. to",
+                "truncated", "invalid", "remeshed"}};
+  for (const auto& level : d["levels"])
+    rows.push_back({std::to_string(rows.size() - 1), real(level["scale"]), whole(level["vertices"]),
+                    whole(level["triangles"]), whole(level["parts"]),
+                    from_to(level["gaussian_curvature"]), from_to(level["mean_curvature"]),
+                    whole(level["truncated_vertices"]), whole(level["invalid_vertices"]),
+                    remeshing_in_words(level["remeshing"])});
+  print_text(table_text(rows, 2, "rlllllllll"));
+}
+
 void print_features(const nlohmann::json& d) {
-  std::printf(
-      "  level  max |K|  max |H|  torsion on K = 0, H = 0  features  smoothed   "
-      "K = 0    length     H = 0    length\n");
-  int k = 0;
+  Rows rows = {{"level", "max |K|", "max |H|", "torsion on K = 0", "on H = 0", "features",
+                "smoothed", "K = 0", "length", "H = 0", "length"}};
+  const nlohmann::json& selection = d["selection"];
   for (const auto& level : d["levels"]) {
+    const std::size_t k = rows.size() - 1;
     const nlohmann::json& features = level["features"];
-    const nlohmann::json& contours = level["contours"];
-    const auto count = [](const nlohmann::json& number) { return number.get<long long>(); };
-    const auto length = [](const nlohmann::json& number) { return number.get<double>(); };
-    std::printf(
-        "  %5d  %-7lld  %-7lld  %-16lld  %-5lld  %-8lld  %-9.4g  %-7lld  %-9.4g  %-7lld  %.4g\n", k,
-        count(features["gaussian"]), count(features["mean"]), count(features["gaussian_torsion"]),
-        count(features["mean_torsion"]), count(d["selection"]["feature_counts"][k]),
-        length(d["selection"]["smoothed"][k]), count(contours["gaussian"]["count"]),
-        length(contours["gaussian"]["length"]), count(contours["mean"]["count"]),
-        length(contours["mean"]["length"]));
-    ++k;
+    const nlohmann::json& gaussian = level["contours"]["gaussian"];
+    const nlohmann::json& mean = level["contours"]["mean"];
+    rows.push_back({std::to_string(k), whole(features["gaussian"]), whole(features["mean"]),
+                    whole(features["gaussian_torsion"]), whole(features["mean_torsion"]),
+                    whole(selection["feature_counts"][k]),
+                    io::fixed_text(selection["smoothed"][k].get<double>(), 2),
+                    whole(gaussian["count"]), real(gaussian["length"]), whole(mean["count"]),
+                    real(mean["length"])});
   }
+  print_text(table_text(rows, 2, "rllllllllll"));
+}
+
+/// Returns "3 welded_vertices, 1 split_vertices"; "none" if nothing was repaired.
+std::string repairs_in_words(const nlohmann::json& repairs) {
+  std::string text;
+  for (const auto& [name, count] : repairs.items())
+    if (count != 0) text += (text.empty() ? "" : ", ") + count.dump() + " " + name;
+  return text.empty() ? "none" : text;
 }
 
 void print_dataset(const nlohmann::json& d) {
-  std::printf("%s\n", d["file"].get<std::string>().c_str());
-  std::printf("  input       %s (xxh3 %s)\n", d["input_name"].get<std::string>().c_str(),
-              d["input_xxh3"].get<std::string>().c_str());
-  std::printf("  made by     semigeo %s with %s\n", d["creator_version"].get<std::string>().c_str(),
-              d["parameters"].dump().c_str());
-  std::string repairs;
-  for (const auto& [name, count] : d["repairs"].items())
-    if (count != 0) repairs += (repairs.empty() ? "" : ", ") + count.dump() + " " + name;
-  std::printf("  repairs     %s\n", repairs.empty() ? "none" : repairs.c_str());
-  if (!d["preparation"].empty()) std::printf("  preparation %s\n", d["preparation"].dump().c_str());
-  std::printf("  length unit %s, digest %s\n", d["length_unit"].get<std::string>().c_str(),
-              d["digest"].get<std::string>().c_str());
-  std::printf("  selection   level %lld, chosen by %s\n", d["selection"]["level"].get<long long>(),
-              d["selection"]["chosen"] == "slope" ? "the curve of its features" : "the user");
-  std::printf(
-      "  level  scale       vertices   triangles  parts  K from .. to              "
-      "H from .. to              truncated  invalid  remeshed\n");
-  int k = 0;
-  for (const auto& level : d["levels"])
-    std::printf(
-        "  %5d  %-10.4g  %-9lld  %-9lld  %-5lld  %-11.4g .. %-11.4g  %-11.4g .. %-11.4g  "
-        "%-9lld  %-7lld  %s\n",
-        k++, level["scale"].get<double>(), level["vertices"].get<long long>(),
-        level["triangles"].get<long long>(), level["parts"].get<long long>(),
-        level["gaussian_curvature"][0].get<double>(), level["gaussian_curvature"][1].get<double>(),
-        level["mean_curvature"][0].get<double>(), level["mean_curvature"][1].get<double>(),
-        level["truncated_vertices"].get<long long>(), level["invalid_vertices"].get<long long>(),
-        remeshing_in_words(level["remeshing"]).c_str());
+  const auto text = [&](const char* name) { return d[name].get<std::string>(); };
+  print(text("file"), "\n");
+  print("  input       ", text("input_name"), " (xxh3 ", text("input_xxh3"), ")\n");
+  print("  made by     semigeo ", text("creator_version"), " with ", d["parameters"].dump(), "\n");
+  print("  repairs     ", repairs_in_words(d["repairs"]), "\n");
+  if (!d["preparation"].empty()) print("  preparation ", d["preparation"].dump(), "\n");
+  print("  length unit ", text("length_unit"), ", digest ", text("digest"), "\n");
+  print("  origin      ", real(d["origin"][0]), " ", real(d["origin"][1]), " ",
+        real(d["origin"][2]), "\n");
+  const std::string_view chosen =
+      d["selection"]["chosen"] == "slope" ? "the curve of its features" : "the user";
+  print("  selection   level ", whole(d["selection"]["level"]), ", chosen by ", chosen, "\n");
+  print_levels(d);
   print_features(d);
 }
 
@@ -184,11 +209,15 @@ nlohmann::json summary_json(const std::filesystem::path& path) {
 }
 
 void print_summary(const nlohmann::json& d) {
-  std::printf("%-40s %9lld vertices %9lld triangles %4lld parts %3lld levels, scale %.4g .. %.4g\n",
-              d["input_name"].get<std::string>().c_str(), d["vertices"].get<long long>(),
-              d["triangles"].get<long long>(), d["parts"].get<long long>(),
-              d["levels"].get<long long>(), d["scales"][0].get<double>(),
-              d["scales"][1].get<double>());
+  constexpr std::size_t kNameWidth = 40;
+  const auto number = [&](const char* name, std::size_t width) {
+    const std::string digits = whole(d[name]);
+    return std::string(width > digits.size() ? width - digits.size() : 0, ' ') + digits;
+  };
+  print_text(padded(io::printable(d["input_name"].get<std::string>()), kNameWidth));
+  print(" ", number("vertices", 9), " vertices ", number("triangles", 9), " triangles ",
+        number("parts", 4), " parts ", number("levels", 3), " levels, scale ", real(d["scales"][0]),
+        " .. ", real(d["scales"][1]), "\n");
 }
 
 int info(const InfoOptions& options) {
@@ -202,7 +231,7 @@ int info(const InfoOptions& options) {
       if (!options.json) (archive ? print_summary : print_dataset)(document);
       all.push_back(std::move(document));
     } catch (const io::Error& e) {
-      std::fprintf(stderr, "semigeo: %s\n", e.what());
+      complain(e);
       exit_code = kSomeFailed;
     }
   }

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstdio>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/datasets.hpp"
 #include "jobs/cli/json_output.hpp"
+#include "jobs/cli/output.hpp"
 #include "jobs/cli/run_plan.hpp"
 #include "jobs/kinds/library_plan.hpp"
 #include "jobs/kinds/triplets.hpp"
@@ -164,11 +164,9 @@ int list(const LibraryOptions& options) {
     return kAllDone;
   }
   for (const io::ModelInfo& model : library.models())
-    std::printf("%s: %lld features, %lld triplets, diagonal %.6g\n", model.name.c_str(),
-                static_cast<long long>(model.features), static_cast<long long>(model.triplets),
-                static_cast<double>(model.diagonal));
-  std::printf("%zu models, %lld triplets\n", library.models().size(),
-              static_cast<long long>(library.posting_count()));
+    print(model.name, ": ", model.features, " features, ", model.triplets, " triplets, diagonal ",
+          model.diagonal, "\n");
+  print(library.models().size(), " models, ", library.posting_count(), " triplets\n");
   return kAllDone;
 }
 
@@ -182,9 +180,9 @@ int check(const LibraryOptions& options) {
     if (!problem.empty()) document["error"] = problem;
     print_document(document);
   } else if (problem.empty()) {
-    std::printf("%s: every byte is as it was written\n", options.library.c_str());
+    print(options.library, ": every byte is as it was written\n");
   } else {
-    std::printf("broken: %s\n", problem.c_str());
+    print("broken: ", problem, "\n");
   }
   return problem.empty() ? kAllDone : kSomeFailed;
 }

@@ -3,12 +3,13 @@
 
 #include <cstdio>
 #include <exception>
-#include <iostream>
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
 #include "jobs/cli/command.hpp"
+#include "jobs/cli/output.hpp"
 #include "jobs/stages/chosen_instruction_set.hpp"
 
 namespace {
@@ -30,8 +31,7 @@ void occupy_standard_streams() {
 }
 
 bool results_were_written() {
-  std::cout.flush();
-  return std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good();
+  return std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
 }
 
 /// Returns the version, and in a second line how patches are traced on this machine.
@@ -48,7 +48,7 @@ int run(int argc, char** argv) {
   try {
     version = version_text();
   } catch (const std::invalid_argument& e) {
-    std::fprintf(stderr, "semigeo: %s\n", e.what());
+    complain(e);
     return kUsage;
   }
   CLI::App app{"semigeo turns archives of 3-D scans into multi-scale surface datasets.", "semigeo"};
@@ -81,9 +81,14 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? kAllDone : kUsage;
+    std::ostringstream help;
+    std::ostringstream problem;
+    const bool ok = app.exit(e, help, problem) == 0;
+    print_text(help.str());
+    print_error(semigeo::io::printable_lines(problem.str()));
+    return ok ? kAllDone : kUsage;
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "semigeo: %s\n", e.what());
+    complain(e);
     return kSomeFailed;
   }
   return exit_code;
@@ -95,8 +100,7 @@ int main(int argc, char** argv) {
   occupy_standard_streams();
   const int exit_code = run(argc, argv);
   if (results_were_written()) return exit_code;
-  std::fprintf(stderr,
-               "semigeo: standard output cannot be written to its end; check the disk or what it "
-               "is piped to\n");
+  semigeo::jobs::cli::complain(
+      "standard output cannot be written to its end; check the disk or what it is piped to");
   return exit_code == 0 ? semigeo::jobs::cli::kSomeFailed : exit_code;
 }

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,6 +7,7 @@
 #include "io/files/error.hpp"
 #include "io/scans/scan_reader.hpp"
 #include "jobs/cli/command.hpp"
+#include "jobs/cli/output.hpp"
 #include "jobs/cli/recognise_report.hpp"
 #include "jobs/cli/run_plan.hpp"
 #include "jobs/cli/table_options.hpp"
@@ -55,13 +55,12 @@ int recognise(RecogniseOptions& options) {
   try {
     scenes = scenes_of(options, library);
   } catch (const io::Error& e) {
-    std::fprintf(stderr, "semigeo: %s\n", e.what());
+    complain(e);
     return kUsage;
   }
   if (scenes.scans.empty()) {
-    std::fprintf(stderr,
-                 "semigeo: no scan (%s, or .gz of one) and no dataset (.vtkhdf) was found\n",
-                 io::scan_extensions(", ", " or ").c_str());
+    complain("no scan (", io::scan_extensions(", ", " or "),
+             ", or .gz of one) and no dataset (.vtkhdf) was found");
     return kUsage;
   }
   std::optional<TemporaryFolder> temporary;

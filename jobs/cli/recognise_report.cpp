@@ -1,20 +1,22 @@
 #include "jobs/cli/recognise_report.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "jobs/cli/json_output.hpp"
+#include "jobs/cli/output.hpp"
 #include "jobs/cli/run_report.hpp"
+#include "jobs/run/progress.hpp"
 #include "jobs/stages/recognised_file.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {
 
 using nlohmann::json;
-
-constexpr int kNarrowestName = 12;
 
 bool has_file(const JobOutcome& outcome) {
   return is_made(outcome.state);
@@ -32,48 +34,52 @@ std::string name_of_model(const json& candidate) {
   return candidate.at("model").get<std::string>();
 }
 
-/// The layout of both tables of a scene.
-struct Table {
-  int width = 0;  ///< Width of the column of names.
-  bool has_shares = true;
-};
+using Rows = std::vector<std::vector<std::string>>;
 
-Table table_of(const json& document) {
-  std::size_t width = kNarrowestName;
-  for (const char* list : {"objects", "ranking"})
-    for (const json& candidate : document.at(list))
-      width = std::max(width, name_of_model(candidate).size());
-  return {.width = static_cast<int>(width),
-          .has_shares = document.at("search").at("method") != "thesis"};
-}
+constexpr std::size_t kIndent = 2;
+constexpr std::string_view kAlignment = "rlrrrrr";
 
-void print_head(const char* what, int width) {
-  std::printf("  %-10s %-*s %8s %7s %9s %10s %9s\n", what, width, "model", "score", "match",
-              "conflict", "votes", "cluster");
-}
-
-/// Prints a row. The thesis' method compares no surfaces, so it has no matches and conflicts.
-void print_row(std::size_t place, const json& candidate, const Table& table) {
+/// Returns a row. The thesis' method compares no surfaces, so it has no matches and conflicts.
+std::vector<std::string> row_of(std::size_t place, const json& candidate, bool has_shares) {
   const auto share = [&](const char* name) {
-    char text[32] = "-";
-    if (table.has_shares) std::snprintf(text, sizeof text, "%.3f", number(candidate, name));
-    return std::string(text);
+    return has_shares ? io::fixed_text(number(candidate, name), 3) : std::string("-");
   };
-  std::printf("  %10zu %-*s %8.4g %7s %9s %10.2f %9.2f\n", place, table.width,
-              name_of_model(candidate).c_str(), number(candidate, "score"), share("match").c_str(),
-              share("conflict").c_str(), number(candidate, "votes"), number(candidate, "cluster"));
+  return {std::to_string(place),
+          io::printable(name_of_model(candidate)),
+          io::fixed_text(number(candidate, "score"), 4),
+          share("match"),
+          share("conflict"),
+          io::fixed_text(number(candidate, "votes"), 2),
+          io::fixed_text(number(candidate, "cluster"), 2)};
+}
+
+/// Returns the lines of a table of the first `count` candidates: its head, and a line for each.
+std::vector<std::string> table_of(const std::string& what, const json& candidates,
+                                  std::size_t count, bool has_shares) {
+  Rows rows = {{what, "model", "score", "match", "conflict", "votes", "cluster"}};
+  for (const json& candidate : candidates) {
+    if (rows.size() > count) break;
+    rows.push_back(row_of(rows.size(), candidate, has_shares));
+  }
+  std::istringstream text(table_text(rows, kIndent, kAlignment));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(text, line);) lines.push_back(line + '\n');
+  return lines;
 }
 
 /// Prints a pose as a 4 x 4 matrix, and as the seven numbers of the thesis.
 void print_pose(const json& pose) {
-  constexpr int kIndent = 13;
-  std::printf("%*sscale %.6g; d h q %.6g %.6g %.6g; gamma beta alpha %.3f %.3f %.3f degrees\n",
-              kIndent, "", number(pose, "scale"), number(pose, "d"), number(pose, "h"),
-              number(pose, "q"), number(pose, "gamma_degrees"), number(pose, "beta_degrees"),
-              number(pose, "alpha_degrees"));
-  for (const json& row : pose.at("matrix"))
-    std::printf("%*s%13.6g %13.6g %13.6g %13.6g\n", kIndent, "", row.at(0).get<double>(),
-                row.at(1).get<double>(), row.at(2).get<double>(), row.at(3).get<double>());
+  constexpr std::size_t kPoseIndent = 13;
+  const auto real = [&](const char* name) { return io::number_text(number(pose, name)); };
+  print(std::string(kPoseIndent, ' '), "scale ", real("scale"), "; d h q ", real("d"), " ",
+        real("h"), " ", real("q"), "; gamma beta alpha ", real("gamma_degrees"), " ",
+        real("beta_degrees"), " ", real("alpha_degrees"), " degrees\n");
+  Rows rows;
+  for (const json& row : pose.at("matrix")) {
+    std::vector<std::string>& cells = rows.emplace_back();
+    for (const json& value : row) cells.push_back(io::number_text(value.get<double>()));
+  }
+  print_text(table_text(rows, kPoseIndent, "rrrr"));
 }
 
 std::string verdict(const json& document) {
@@ -81,29 +87,27 @@ std::string verdict(const json& document) {
   if (!objects.empty()) return counted(objects.size(), "object", "objects");
   if (document.at("scene").at("features") == 0) return "no features: nothing can be recognised";
   std::string text = "no model of the library is in this scene";
-  char least[32];
-  std::snprintf(least, sizeof least, "%.4g", number(document.at("search"), "min_score"));
+  const std::string least = io::number_text(number(document.at("search"), "min_score"));
   const json& ranking = document.at("ranking");
   return text + (ranking.empty() ? " (nothing agrees with any)"
                                  : std::string(" (no score reaches ") + least + ")");
 }
 
 void print_scene(const PlannedJob& planned, const json& document, std::size_t top) {
-  std::printf("%s: %s\n", planned.job.input.c_str(), verdict(document).c_str());
-  const Table table = table_of(document);
-  std::size_t place = 0;
-  for (const json& object : document.at("objects")) {
-    if (place == 0) print_head("object", table.width);
-    print_row(++place, object, table);
-    print_pose(object.at("pose"));
+  print(planned.job.input, ": ", verdict(document), "\n");
+  const bool has_shares = document.at("search").at("method") != "thesis";
+  const json& objects = document.at("objects");
+  if (!objects.empty()) {
+    const std::vector<std::string> lines = table_of("object", objects, objects.size(), has_shares);
+    print_text(lines.front());
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      print_text(lines[i + 1]);
+      print_pose(objects[i].at("pose"));
+    }
   }
-  place = 0;
-  for (const json& candidate : document.at("ranking")) {
-    if (place == top) break;
-    if (place == 0) print_head("ranking", table.width);
-    print_row(++place, candidate, table);
-  }
-  std::printf("\n");
+  if (const json& ranking = document.at("ranking"); top > 0 && !ranking.empty())
+    for (const std::string& line : table_of("ranking", ranking, top, has_shares)) print_text(line);
+  print("\n");
 }
 
 }  // namespace
@@ -119,17 +123,14 @@ void print_recognised(const RunResult& result, const SearchedLibrary& library,
     print_scene(plan[i], document, report.top);
   }
   for (const JobOutcome& outcome : outcomes)
-    if (outcome.state == JobState::kFailed) std::printf("failed: %s\n", outcome.error.c_str());
+    if (outcome.state == JobState::kFailed) print("failed: ", outcome.error, "\n");
   print_passed_over(report.passed_over);
   const auto done = static_cast<std::size_t>(std::ranges::count_if(outcomes, has_file));
-  std::printf(
-      "%s, %s: %zu with objects, %zu without, %lld failed%s; %.2f s wall, %.2f s CPU, "
-      "%.0f MB peak\n",
-      counted(plan.size(), "scene", "scenes").c_str(),
-      counted(library.models, "model", "models").c_str(), found, done - found,
-      static_cast<long long>(summary.failed),
-      summary.not_run > 0 ? (", " + std::to_string(summary.not_run) + " not run").c_str() : "",
-      summary.wall_seconds, summary.cpu_seconds, summary.peak_bytes / 1e6);
+  print(counted(plan.size(), "scene", "scenes"), ", ", counted(library.models, "model", "models"),
+        ": ", found, " with objects, ", done - found, " without, ", summary.failed, " failed",
+        summary.not_run > 0 ? ", " + std::to_string(summary.not_run) + " not run" : "", "; ",
+        short_duration(summary.wall_seconds), " wall, ", short_duration(summary.cpu_seconds),
+        " CPU, ", io::fixed_text(summary.peak_bytes / 1e6, 0), " MB peak\n");
 }
 
 void print_recognised_json(const RunResult& result, const SearchedLibrary& library,

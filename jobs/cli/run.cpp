@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <memory>
 #include <string>
 
@@ -6,6 +5,7 @@
 #include "io/files/error.hpp"
 #include "io/scans/scan_reader.hpp"
 #include "jobs/cli/command.hpp"
+#include "jobs/cli/output.hpp"
 #include "jobs/cli/run_plan.hpp"
 #include "jobs/cli/surface_options.hpp"
 #include "jobs/kinds/library_plan.hpp"
@@ -54,12 +54,11 @@ int find_and_run(const RunOptions& options, const std::string& effective_config)
   try {
     found = find_scans(options.inputs, options.archive);
   } catch (const io::Error& e) {
-    std::fprintf(stderr, "semigeo: %s\n", e.what());
+    complain(e);
     return kUsage;
   }
   if (found.scans.empty()) {
-    std::fprintf(stderr, "semigeo: no %s file (or .gz of one) was found\n",
-                 io::scan_extensions(", ", " or ").c_str());
+    complain("no ", io::scan_extensions(", ", " or "), " file (or .gz of one) was found");
     return kUsage;
   }
   return run_plan(

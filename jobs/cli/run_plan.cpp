@@ -9,6 +9,7 @@
 #include "jobs/archive/archive_lock.hpp"
 #include "jobs/archive/estimates.hpp"
 #include "jobs/cli/command.hpp"
+#include "jobs/cli/output.hpp"
 #include "jobs/cli/run_report.hpp"
 #include "jobs/plan/plan_graph.hpp"
 #include "jobs/run/local_runner.hpp"
@@ -24,8 +25,8 @@ int dry_run(const ExecutionOptions& options, const PlanSource& source) {
   const std::vector<PlannedJob> plan = source.plan(cache);
   if (options.graph != GraphFormat::kNone) {
     const std::vector<GraphNode> graph = graph_of(plan);
-    std::fputs((options.graph == GraphFormat::kDot ? to_dot(graph) : to_json(graph)).c_str(),
-               stdout);
+    print_text(options.graph == GraphFormat::kDot ? to_dot(graph)
+                                                  : io::printable_json(to_json(graph)));
   } else {
     print_plan(plan, options.json, options.explain, source.passed_over);
   }
@@ -81,7 +82,7 @@ int print_results(const ExecutionOptions& options, const PlanSource& source,
   } else if (options.json) {
     print_json(result, source.passed_over);
   } else {
-    print_text(result, source.passed_over);
+    print_run(result, source.passed_over);
   }
   if (result.summary.not_run > 0) return kStoppedEarly;
   return result.summary.failed == 0 ? kAllDone : kSomeFailed;
@@ -94,7 +95,7 @@ int run(const ExecutionOptions& options, const PlanSource& source) {
       .prepare = source.prepare,
       .runner = [&](const std::vector<PlannedJob>& plan) -> Runner& { return chosen.runner(plan); },
       .settings = [&] { return chosen.execution(); },
-      .warn = [](const std::string& what) { std::fprintf(stderr, "semigeo: %s\n", what.c_str()); }};
+      .warn = [](const std::string& what) { complain(what); }};
   if (options.explain && !options.json)
     hooks.planned = [](const std::vector<PlannedJob>& plan) {
       print_plan(plan, false, true);
@@ -121,7 +122,7 @@ int run_plan(const ExecutionOptions& options, const PlanSource& source) {
     const bool dry = options.dry_run || options.graph != GraphFormat::kNone;
     return dry ? dry_run(options, source) : run(options, source);
   } catch (const LockedError& e) {
-    std::fprintf(stderr, "semigeo: %s\n", e.what());
+    complain(e);
     return kLocked;
   }
 }

@@ -1,12 +1,12 @@
 #include "jobs/cli/run_report.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 
 #include "jobs/cli/json_output.hpp"
+#include "jobs/cli/output.hpp"
 #include "jobs/plan/job_kind.hpp"
 
 namespace semigeo::jobs::cli {
@@ -52,8 +52,8 @@ void print_reports(const RunResult& result, const JobKind& kind) {
   for (std::size_t k = 0; k < most_lines; ++k)
     for (const auto& [i, report] : reports)
       if (k < report.lines.size() && !report.lines[k].text.empty())
-        std::printf("%s: %s: %s\n", report.lines[k].heading.c_str(),
-                    result.plan[i].job.name.c_str(), report.lines[k].text.c_str());
+        print(report.lines[k].heading, ": ", result.plan[i].job.name, ": ", report.lines[k].text,
+              "\n");
 }
 
 /// Returns the kinds of a plan, in the order in which they appear.
@@ -70,19 +70,17 @@ void print_counts(const std::vector<const PlannedJob*>& plan) {
   const auto up_to_date = std::ranges::count_if(plan, &PlannedJob::up_to_date);
   const auto unreadable =
       std::ranges::count_if(plan, [](const PlannedJob* planned) { return !is_readable(*planned); });
-  const auto all = static_cast<long long>(plan.size());
-  std::printf("%lld %s: %lld would run, %lld up to date", all,
-              plan.front()->job.kind->words().plural.c_str(), all - up_to_date - unreadable,
-              static_cast<long long>(up_to_date));
-  if (unreadable > 0) std::printf(", %lld cannot be read", static_cast<long long>(unreadable));
-  std::printf("\n");
+  print(plan.size(), " ", plan.front()->job.kind->words().plural, ": ",
+        std::ssize(plan) - up_to_date - unreadable, " would run, ", up_to_date, " up to date");
+  if (unreadable > 0) print(", ", unreadable, " cannot be read");
+  print("\n");
 }
 
 }  // namespace
 
 void print_passed_over(const PassedOver& passed_over) {
   const std::string words = in_words(passed_over);
-  if (!words.empty()) std::printf("passed over: %s\n", words.c_str());
+  if (!words.empty()) print("passed over: ", words, "\n");
 }
 
 void add_passed_over(nlohmann::json& document, const PassedOver& passed_over) {
@@ -110,10 +108,10 @@ void print_plan(const std::vector<PlannedJob>& plan, bool json, bool explain,
     const bool of_scan = p.job.kind->words().stands_for_scan;
     (of_scan ? scans : others).push_back(&p);
     if (p.up_to_date) continue;
-    std::printf("%s: %s\n", shown_name(p.job).c_str(),
-                p.error.empty() ? ("would run: " + in_short(p.reasons)).c_str() : p.error.c_str());
+    print(shown_name(p.job), ": ", p.error.empty() ? "would run: " + in_short(p.reasons) : p.error,
+          "\n");
     if (!explain) continue;
-    for (const Reason& reason : p.reasons) std::printf("    %s\n", in_words(reason).c_str());
+    for (const Reason& reason : p.reasons) print("    ", in_words(reason), "\n");
   }
   print_passed_over(passed_over);
   if (!scans.empty()) print_counts(scans);
@@ -151,14 +149,13 @@ void print_json(const RunResult& result, const PassedOver& passed_over) {
   print_document(document);
 }
 
-void print_text(const RunResult& result, const PassedOver& passed_over) {
+void print_run(const RunResult& result, const PassedOver& passed_over) {
   for (const JobKind* kind : kinds_of(result.plan)) print_reports(result, *kind);
   for (const JobOutcome& outcome : result.outcomes)
-    if (outcome.state == JobState::kFailed) std::printf("failed: %s\n", outcome.error.c_str());
+    if (outcome.state == JobState::kFailed) print("failed: ", outcome.error, "\n");
   for (std::size_t i = 0; i < result.plan.size(); ++i) {
     const Job& job = result.plan[i].job;
-    if (const auto told = job.kind->summary(job, result.outcomes[i].state))
-      std::printf("%s\n", told->text.c_str());
+    if (const auto told = job.kind->summary(job, result.outcomes[i].state)) print(told->text, "\n");
   }
   print_passed_over(passed_over);
   const RunSummary& summary = result.summary;
@@ -167,20 +164,19 @@ void print_text(const RunResult& result, const PassedOver& passed_over) {
   const std::string not_run =
       (summary.skipped > 0 ? ", " + std::to_string(summary.skipped) + " skipped" : "") +
       (summary.not_run > 0 ? ", " + std::to_string(summary.not_run) + " not run" : "");
-  std::printf("%lld done, %lld up to date, %lld failed%s; %s%s wall, %s CPU, %.0f MB peak\n",
-              static_cast<long long>(summary.done), static_cast<long long>(summary.up_to_date),
-              static_cast<long long>(summary.failed), not_run.c_str(), rate.c_str(),
-              short_duration(summary.wall_seconds).c_str(),
-              short_duration(summary.cpu_seconds).c_str(), summary.peak_bytes / 1e6);
+  print(summary.done, " done, ", summary.up_to_date, " up to date, ", summary.failed, " failed",
+        not_run, "; ", rate, short_duration(summary.wall_seconds), " wall, ",
+        short_duration(summary.cpu_seconds), " CPU, ", io::fixed_text(summary.peak_bytes / 1e6, 0),
+        " MB peak\n");
 }
 
 void print_submitted(const std::vector<SubmittedStage>& stages, bool json) {
   nlohmann::json list = nlohmann::json::array();
   for (const SubmittedStage& stage : stages) {
     list.push_back({{"name", stage.name}, {"job", stage.job}, {"tasks", stage.tasks}});
-    if (!json) std::printf("%s\n", stage.job.c_str());
+    if (!json) print(stage.job, "\n");
   }
-  if (json) std::printf("%s\n", nlohmann::json{{"submitted", list}}.dump(2).c_str());
+  if (json) print_document({{"submitted", list}});
 }
 
 }  // namespace semigeo::jobs::cli

@@ -20,7 +20,7 @@ void print_json(const RunResult& result, const PassedOver& passed_over = {});
 
 /// Prints on stdout what a run has done as text: a line for each report of a job, then the
 /// failures, the summary of a library, the files that were passed over, and the totals.
-void print_text(const RunResult& result, const PassedOver& passed_over = {});
+void print_run(const RunResult& result, const PassedOver& passed_over = {});
 
 /// Prints on stdout the files that were passed over as text, if there are any.
 void print_passed_over(const PassedOver& passed_over);

@@ -1,11 +1,11 @@
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "jobs/archive/status.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/json_output.hpp"
+#include "jobs/cli/output.hpp"
 #include "jobs/run/progress.hpp"
 
 namespace semigeo::jobs::cli {
@@ -47,37 +47,34 @@ nlohmann::json to_json(const ArchiveStatus& status) {
   return document;
 }
 
-void print(const ArchiveStatus& status) {
-  const auto count = [](auto number) { return static_cast<long long>(number); };
-  std::printf("%s", state_of(status));
-  if (status.last_run)
-    std::printf(", started %s, %s", status.started.c_str(), short_duration(status.seconds).c_str());
+/// Prints how many jobs have ended, and how fast.
+void print_counts(const ArchiveStatus& status) {
+  print(status.done, " done, ", status.up_to_date, " up to date, ", status.failed.size(),
+        " failed, ", status.is_running() ? status.running.size() : 0, " running, ", status.left(),
+        " left");
+  if (status.skipped > 0) print(", ", status.skipped, " skipped");
+  if (status.vertex_levels > 0)
+    print("; ", short_number(status.vertex_levels_per_second()), " vertex levels/s");
+  if (const auto left = status.seconds_left()) print(", ", short_duration(*left), " left");
+  print("\n");
+}
+
+void print_status(const ArchiveStatus& status) {
+  print(std::string_view(state_of(status)));
+  if (status.last_run) print(", started ", status.started, ", ", short_duration(status.seconds));
   if (status.owner)
-    std::printf("; process %lld on %s", count(status.owner->process.pid),
-                status.owner->process.host.c_str());
-  std::printf("\n");
-  if (status.last_run) {
-    std::printf("%lld done, %lld up to date, %lld failed, %lld running, %lld left",
-                count(status.done), count(status.up_to_date), count(status.failed.size()),
-                count(status.is_running() ? status.running.size() : 0), count(status.left()));
-    if (status.skipped > 0) std::printf(", %lld skipped", count(status.skipped));
-    if (status.vertex_levels > 0)
-      std::printf("; %s vertex levels/s", short_number(status.vertex_levels_per_second()).c_str());
-    if (const auto left = status.seconds_left())
-      std::printf(", %s left", short_duration(*left).c_str());
-    std::printf("\n");
-  }
+    print("; process ", status.owner->process.pid, " on ", status.owner->process.host);
+  print("\n");
+  if (status.last_run) print_counts(status);
   // If all jobs made datasets, the numbers above are enough.
   if (std::ranges::any_of(status.done_by_kind,
                           [](const auto& kind) { return kind.first != "surface"; }))
-    for (const auto& [kind, number] : status.done_by_kind)
-      std::printf("done: %lld %s\n", count(number), kind.c_str());
+    for (const auto& [kind, number] : status.done_by_kind) print("done: ", number, " ", kind, "\n");
   for (const auto& [job, seconds] : status.running)
-    std::printf("%s: %s, since %s\n", status.is_running() ? "running" : "cut off", job.c_str(),
-                short_duration(seconds).c_str());
-  for (const auto& [job, error] : status.failed)
-    std::printf("failed: %s: %s\n", job.c_str(), error.c_str());
-  std::printf("%lld datasets in the archive\n", count(status.datasets));
+    print(std::string_view(status.is_running() ? "running" : "cut off"), ": ", job, ", since ",
+          short_duration(seconds), "\n");
+  for (const auto& [job, error] : status.failed) print("failed: ", job, ": ", error, "\n");
+  print(status.datasets, " datasets in the archive\n");
 }
 
 }  // namespace
@@ -94,7 +91,7 @@ void add_status(CLI::App& app, int& exit_code) {
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options, &exit_code] {
     const ArchiveStatus status = status_of(options->archive);
-    options->json ? print_document(to_json(status)) : print(status);
+    options->json ? print_document(to_json(status)) : print_status(status);
     exit_code = kAllDone;
   });
 }

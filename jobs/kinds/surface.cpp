@@ -1,13 +1,13 @@
 #include "jobs/kinds/surface.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "io/dataset/dataset.hpp"
 #include "io/dataset/xdmf.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
+#include "io/files/number_text.hpp"
 #include "jobs/archive/scan_size.hpp"
 #include "jobs/plan/plan.hpp"
 #include "jobs/plan/typed_job_kind.hpp"
@@ -113,8 +113,7 @@ std::string in_words(const PreparationResult& preparation) {
   if (preparation == PreparationResult{}) return "";
   std::string text = preparation.holes.loops > 0 ? in_words(preparation.holes) : "";
   if (preparation.removed_vertices > 0) {
-    char distance[64];
-    std::snprintf(distance, sizeof distance, "%.3g", preparation.distance.maximum);
+    const std::string distance = io::number_text(preparation.distance.maximum);
     text += (text.empty() ? "" : ", ") + std::to_string(preparation.removed_vertices) +
             " vertices removed, at most " + distance + " from what is left";
   }

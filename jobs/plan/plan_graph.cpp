@@ -1,9 +1,11 @@
 #include "jobs/plan/plan_graph.hpp"
 
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <string_view>
 
-#include "io/files/utf8.hpp"
+#include "io/files/printable.hpp"
 #include "jobs/plan/job_kind.hpp"
 
 namespace semigeo::jobs {
@@ -38,14 +40,13 @@ GraphNode node_of(const ExternalFile& file) {
           .state = file.is_readable ? "readable" : "unreadable"};
 }
 
-/// Returns the text in quotes, with special characters escaped.
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : io::as_utf8(text)) {
-    if (c == '"' || c == '\\') result += '\\';
-    if (c == '\n') {
-      result += "\\n";
-    } else {
+/// Returns the lines in quotes, as a text of Graphviz. Names of files become printable.
+std::string quoted(std::initializer_list<std::string_view> lines) {
+  std::string result;
+  for (const std::string_view line : lines) {
+    result += result.empty() ? "\"" : "\\n";
+    for (const char c : io::printable(line)) {
+      if (c == '"' || c == '\\') result += '\\';
       result += c;
     }
   }
@@ -96,13 +97,13 @@ std::string to_json(const std::vector<GraphNode>& graph) {
 std::string to_dot(const std::vector<GraphNode>& graph) {
   std::string text = "digraph semigeo {\n  rankdir=LR;\n";
   for (const GraphNode& node : graph) {
-    text += "  " + quoted(node.id) + " [shape=" + (node.is_job ? "box" : "note") +
+    text += "  " + quoted({node.id}) + " [shape=" + (node.is_job ? "box" : "note") +
             ", style=" + (node.state == "up to date" ? "dashed" : "solid") +
-            ", label=" + quoted((node.is_job ? node.id : node.name) + "\n" + node.state) + "];\n";
+            ", label=" + quoted({node.is_job ? node.id : node.name, node.state}) + "];\n";
   }
   for (const GraphNode& node : graph)
     for (const std::string& dependency : node.dependencies)
-      text += "  " + quoted(dependency) + " -> " + quoted(node.id) + ";\n";
+      text += "  " + quoted({dependency}) + " -> " + quoted({node.id}) + ";\n";
   return text + "}\n";
 }
 

@@ -6,6 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string>
+
+#include "io/files/number_text.hpp"
+#include "io/files/printable.hpp"
 
 namespace semigeo::jobs {
 namespace {
@@ -23,44 +27,45 @@ std::size_t terminal_width() {
   return (known ? size.ws_col : kUsualWidth) - 1;
 }
 
-/// Returns both ends of `text` with dots between them, or all of it if it fits.
+/// Returns both ends of `text` with dots between them, or all of it if it fits. `width` counts
+/// characters.
 std::string shortened(const std::string& text, std::size_t width) {
   constexpr std::size_t kDots = 3;
-  if (text.size() <= width) return text;
+  const std::size_t length = io::count_characters(text);
+  if (length <= width) return text;
   const std::size_t tail = (width - kDots + 1) / 2;
-  return text.substr(0, width - kDots - tail) + "..." + text.substr(text.size() - tail);
+  const std::size_t tail_begin = io::first_characters(text, length - tail).size();
+  return std::string(io::first_characters(text, width - kDots - tail)) + "..." +
+         text.substr(tail_begin);
 }
 
-template <typename... Arguments>
-std::string format(const char* pattern, Arguments... arguments) {
-  const int length = std::snprintf(nullptr, 0, pattern, arguments...);
-  std::string text(length + 1, '\0');
-  std::snprintf(text.data(), text.size(), pattern, arguments...);
-  text.pop_back();
-  return text;
+/// Returns a whole number below 100 with two digits.
+std::string two_digits(long number) {
+  return (number < 10 ? "0" : "") + std::to_string(number);
 }
 
 }  // namespace
 
 std::string progress_line(const std::string& counts, const std::string& name, std::size_t width) {
   const std::string text = counts + ", ";
-  if (text.size() + std::min(name.size(), kShortestName) > width) return counts.substr(0, width);
+  const std::size_t shortest = std::min(io::count_characters(name), kShortestName);
+  if (text.size() + shortest > width) return counts.substr(0, width);
   return text + shortened(name, width - text.size());
 }
 
 std::string short_number(double value) {
-  if (value >= 1e9) return format("%.2f G", value / 1e9);
-  if (value >= 1e6) return format("%.2f M", value / 1e6);
-  if (value >= 1e4) return format("%.0f k", value / 1e3);
-  return format("%.0f", value);
+  if (value >= 1e9) return io::fixed_text(value / 1e9, 2) + " G";
+  if (value >= 1e6) return io::fixed_text(value / 1e6, 2) + " M";
+  if (value >= 1e4) return io::fixed_text(value / 1e3, 0) + " k";
+  return io::fixed_text(value, 0);
 }
 
 std::string short_duration(double seconds) {
-  const auto whole = static_cast<long>(std::lround(seconds));
-  if (seconds < 10) return format("%.1f s", seconds);
-  if (whole < 60) return format("%ld s", whole);
-  if (whole < 3600) return format("%ld min %02ld s", whole / 60, whole % 60);
-  return format("%ld h %02ld min", whole / 3600, whole % 3600 / 60);
+  const auto whole = std::lround(seconds);
+  if (seconds < 10) return io::fixed_text(seconds, 1) + " s";
+  if (whole < 60) return std::to_string(whole) + " s";
+  if (whole < 3600) return std::to_string(whole / 60) + " min " + two_digits(whole % 60) + " s";
+  return std::to_string(whole / 3600) + " h " + two_digits(whole % 3600 / 60) + " min";
 }
 
 Progress::Progress(std::int64_t jobs, std::uintmax_t bytes)
@@ -78,7 +83,7 @@ void Progress::worked(std::int64_t amount) {
 
 void Progress::job_started(const std::string& name) {
   const std::scoped_lock lock(mutex_);
-  current_ = name;
+  current_ = io::printable(name);
   show(true);
 }
 
@@ -91,15 +96,15 @@ void Progress::job_ended(bool ok, std::uintmax_t bytes) {
 
 void Progress::say(const std::string& line) {
   const std::scoped_lock lock(mutex_);
-  std::fprintf(stderr, "%s%s\n", live_ ? "\r\033[K" : "", line.c_str());
+  std::fprintf(stderr, "%s%s\n", live_ ? "\r\033[K" : "", io::printable(line).c_str());
   live_ = false;
 }
 
 std::string Progress::counts() const {
   const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
   const std::int64_t left = jobs_ - done_ - failed_;
-  std::string text = format("%ld done, %ld failed, %ld left", static_cast<long>(done_),
-                            static_cast<long>(failed_), static_cast<long>(left));
+  std::string text = std::to_string(done_) + " done, " + std::to_string(failed_) + " failed, " +
+                     std::to_string(left) + " left";
   if (elapsed > 0 && vertex_levels_ > 0)
     text += ", " + short_number(static_cast<double>(vertex_levels_) / elapsed) + " vertices/s";
   if (bytes_done_ > 0 && bytes_ > bytes_done_) {

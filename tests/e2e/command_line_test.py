@@ -257,7 +257,7 @@ class InfoTest(SemigeoTest):
             self.assertEqual((level["invalid_vertices"], level["truncated_vertices"]), (0, 0))
         text = self.semigeo("info", self.dataset("sphere.ply")).stdout
         self.assertIn(document["digest"], text)
-        self.assertEqual(len(text.splitlines()), 7 + 3 + 1 + 3)
+        self.assertEqual(len(text.splitlines()), 8 + 3 + 1 + 3)
         self.assertLessEqual(max(len(line) for line in text.splitlines()[-4:]), 120)
         self.assertIn(f"level {document['selection']['level']}, chosen by the curve", text)
         with h5py.File(self.dataset("sphere.ply"), "r") as file:

@@ -219,7 +219,7 @@ class OutputTest(RecogniseTest):
         said = self.semigeo("recognise", *arguments).stdout
         self.assertIn("scene1.ply: 1 object\n", said)
         self.assertRegex(said, r"(?m)^ +scale 2\.?\d*; d h q .* degrees$")
-        ranked = lambda said: re.findall(r"(?m)^ +\d+ \d\.ply ", said[said.index("ranking"):])
+        ranked = lambda said: re.findall(r"(?m)^ +\d+  \d\.ply ", said[said.index("ranking"):])
         self.assertGreater(len(ranked(said)), 1)
         self.assertEqual(len(ranked(self.semigeo("recognise", *arguments, "--top", 1).stdout)), 1)
         self.assertNotIn("ranking", self.semigeo("recognise", *arguments, "--top", 0).stdout)

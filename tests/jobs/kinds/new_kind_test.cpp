@@ -99,7 +99,7 @@ TEST_F(NewKindTest, RunsInAChildAndIsJournalled) {
 TEST_F(NewKindTest, PrintsEveryLineOfItsReports) {
   const RunResult result = run();
   testing::internal::CaptureStdout();
-  cli::print_text(result);
+  cli::print_run(result);
   const std::string text = testing::internal::GetCapturedStdout();
   EXPECT_TRUE(
       text.starts_with("written: one: 5 letters\nwritten: two: 6 letters\n"

@@ -138,13 +138,13 @@ TEST(PlanGraphTest, DotQuotesWhatNamesMayHold) {
   EXPECT_EQ(dot,
             "digraph semigeo {\n"
             "  rankdir=LR;\n"
-            "  \"scan /in/a \\\"b\\\"\\\\\\n\uFFFD.ply\" [shape=note, style=solid, "
-            "label=\"/in/a \\\"b\\\"\\\\\\n\uFFFD.ply\\nreadable\"];\n"
+            "  \"scan /in/a \\\"b\\\"\\\\\\\\n\\\\xff.ply\" [shape=note, style=solid, "
+            "label=\"/in/a \\\"b\\\"\\\\\\\\n\\\\xff.ply\\nreadable\"];\n"
             "  \"surface a.ply\" [shape=box, style=dashed, "
             "label=\"surface a.ply\\nup to date\"];\n"
             "  \"dataset archive/scans/a.ply.vtkhdf\" [shape=note, style=dashed, "
             "label=\"archive/scans/a.ply.vtkhdf\\nup to date\"];\n"
-            "  \"scan /in/a \\\"b\\\"\\\\\\n\uFFFD.ply\" -> \"surface a.ply\";\n"
+            "  \"scan /in/a \\\"b\\\"\\\\\\\\n\\\\xff.ply\" -> \"surface a.ply\";\n"
             "  \"surface a.ply\" -> \"dataset archive/scans/a.ply.vtkhdf\";\n"
             "}\n");
 }
