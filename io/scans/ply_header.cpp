@@ -13,7 +13,7 @@ namespace {
 constexpr std::int64_t kMaxHeaderLines = 10'000;
 constexpr const char* kBadHeader = "correct the header or export the scan again";
 
-constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypeNames = {{
+constexpr std::array<std::pair<std::string_view, PlyType>, 18> kTypeNames = {{
     {"char", PlyType::kInt8},
     {"int8", PlyType::kInt8},
     {"uchar", PlyType::kUint8},
@@ -26,6 +26,8 @@ constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypeNames = {{
     {"int32", PlyType::kInt32},
     {"uint", PlyType::kUint32},
     {"uint32", PlyType::kUint32},
+    {"int64", PlyType::kInt64},
+    {"uint64", PlyType::kUint64},
     {"float", PlyType::kFloat32},
     {"float32", PlyType::kFloat32},
     {"double", PlyType::kFloat64},
@@ -93,7 +95,7 @@ bool read_line(TextScanner& scanner, PlyHeader& header, bool& encoding_known) {
     if (header.elements.empty()) scanner.fail("a property stands before any element", kBadHeader);
     header.elements.back().properties.push_back(read_property(scanner));
   } else {
-    scanner.fail("this is no line of a PLY header", kBadHeader);
+    ++header.unknown_lines;
   }
   return true;
 }
@@ -112,6 +114,8 @@ int ply_type_size(PlyType type) {
     case PlyType::kUint32:
     case PlyType::kFloat32:
       return 4;
+    case PlyType::kInt64:
+    case PlyType::kUint64:
     case PlyType::kFloat64:
       return 8;
   }

@@ -10,7 +10,18 @@
 namespace semigeo::io {
 
 /// The types of numbers in a PLY.
-enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
+enum class PlyType {
+  kInt8,
+  kUint8,
+  kInt16,
+  kUint16,
+  kInt32,
+  kUint32,
+  kInt64,
+  kUint64,
+  kFloat32,
+  kFloat64
+};
 
 /// Returns the size of a number in bytes.
 int ply_type_size(PlyType type);
@@ -46,10 +57,12 @@ struct PlyHeader {
   enum class Encoding { kAscii, kLittleEndian, kBigEndian };
   Encoding encoding = Encoding::kAscii;
   std::vector<PlyElement> elements;
-  std::int64_t lines = 0;  ///< Number of lines of the header.
+  std::int64_t lines = 0;          ///< Number of lines of the header.
+  std::int64_t unknown_lines = 0;  ///< Number of lines that begin with no keyword of PLY.
 };
 
-/// Reads the header and leaves the source behind its last line's end.
+/// Reads the header and leaves the source behind its last line's end. Lines that begin with no
+/// keyword of PLY are passed over and counted.
 PlyHeader read_ply_header(ByteSource& source);
 
 }  // namespace semigeo::io

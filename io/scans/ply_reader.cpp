@@ -185,6 +185,7 @@ Scan read_ply(ByteSource& source, const ScanLimits& limits) {
   const PlyHeader header = read_ply_header(source);
   ScanBuilder builder(source, limits);
   announce(header, builder);
+  builder.add_unknown_header_lines(header.unknown_lines);
   if (header.encoding == PlyHeader::Encoding::kAscii) {
     PlyBody<PlyAsciiDecoder>(source, header, builder).read();
     return builder.finish("PLY ascii");

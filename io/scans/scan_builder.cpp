@@ -113,10 +113,10 @@ void ScanBuilder::fail(Place place, const std::string& problem, const std::strin
 }
 
 void ScanBuilder::fail_promise(std::string_view what, std::int64_t promised, std::int64_t found,
-                               Place end) const {
+                               Place end, std::string_view hint) const {
   fail(end,
        "the header promises " + std::to_string(promised) + " " + std::string(what) +
-           ", but the file ends after " + std::to_string(found),
+           ", but the file ends after " + std::to_string(found) + std::string(hint),
        kExportAgain);
 }
 

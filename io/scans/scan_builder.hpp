@@ -32,12 +32,18 @@ class ScanBuilder {
   void promise_points(std::int64_t count, std::int64_t bytes_each, Place place);
   /// Takes the promise of a header about faces.
   void promise_faces(std::int64_t count, std::int64_t bytes_each, Place place);
-  /// Throws the Error for a promise that the file does not keep: `found` of `promised` `what`.
+  /// Throws the Error for a promise that the file does not keep: `found` of `promised` `what`. A
+  /// `hint` follows the problem.
   [[noreturn]] void fail_promise(std::string_view what, std::int64_t promised, std::int64_t found,
-                                 Place end) const;
+                                 Place end, std::string_view hint = {}) const;
   /// Throws the Error for a problem at a place of the source.
   [[noreturn]] void fail(Place place, const std::string& problem,
                          const std::string& remedy = {}) const;
+
+  /// Counts values that the header does not declare.
+  void add_surplus_values(std::int64_t count) { scan_.surplus_values += count; }
+  /// Counts lines of the header that mean nothing.
+  void add_unknown_header_lines(std::int64_t count) { scan_.unknown_header_lines += count; }
 
   std::int64_t point_count() const { return static_cast<std::int64_t>(scan_.mesh.points.size()); }
 

@@ -41,6 +41,8 @@ struct Scan {
   /// belong to no face.
   std::int64_t bad_vertices = 0;
   std::int64_t faces_of_bad_vertices = 0;  ///< Triangles that were dropped with them.
+  std::int64_t surplus_values = 0;         ///< Values of a text that its header does not declare.
+  std::int64_t unknown_header_lines = 0;   ///< Lines of a header that mean nothing.
 };
 
 /// Reads a surface from PLY, OBJ, OFF or STL, each plain or gzip compressed. Everything in the file

@@ -69,7 +69,7 @@ bool TextScanner::skip_continuation() {
   return true;
 }
 
-bool TextScanner::at_line_end() {
+bool TextScanner::skip_blanks() {
   for (;;) {
     if (cursor_ == end_ && !refill(kMaxWord)) return true;
     const char c = *cursor_;

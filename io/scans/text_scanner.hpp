@@ -33,7 +33,11 @@ class TextScanner {
   /// Returns the number of the current line, from 1.
   std::int64_t line() const { return line_; }
   /// Skips blanks. Returns whether the rest of the line holds nothing (or a comment).
-  bool at_line_end();
+  bool at_line_end() {
+    if (cursor_ != end_ && *cursor_ == ' ') ++cursor_;
+    if (cursor_ != end_ && *cursor_ > '#' && *cursor_ < '\\') return false;  // digits and signs
+    return skip_blanks();
+  }
   /// Leaves the current line. Returns false if the text ends with it.
   bool next_line();
   /// Leaves the current line, which ends at its end even if a backslash stands there: a name may be
@@ -60,6 +64,8 @@ class TextScanner {
 
  private:
   bool refill(std::size_t bytes);
+  /// Skips blanks. Returns whether the rest of the line holds nothing (or a comment).
+  bool skip_blanks();
   /// Makes the whole next word lie in the window.
   void reach_word() {
     if (end_ - cursor_ < static_cast<std::ptrdiff_t>(kMaxWord)) refill(kMaxWord);

@@ -33,7 +33,7 @@ static void each_field(SurfaceJobResult& r, const Visit& visit) {
   visit("parts", r.parts);
   visit("levels", r.levels);
   visit("vanished", r.vanished);
-  each_repair(r.repairs, visit);
+  each_scan_repair(r.repairs, visit);
   visit("holes_loops", r.preparation.holes.loops);
   visit("holes_filled", r.preparation.holes.filled);
   visit("holes_outer", r.preparation.holes.outer);
@@ -84,9 +84,10 @@ static void from_json(const json& object, SurfaceJobData& data) {
 namespace {
 
 /// Returns "3 welded vertices, 1 split vertices"; empty if nothing was repaired.
-std::string in_words(const kernels::SurfaceRepairs& repairs) {
+std::string in_words(const ScanRepairs& repairs) {
   std::string text;
-  const json counts = json_of(repairs);
+  json counts = json_of(repairs);
+  counts.erase("polygons_triangulated");  // nothing is wrong with polygons
   for (const auto& [name, count] : counts.items()) {
     if (count.get<std::int64_t>() == 0) continue;
     std::string words = name;

@@ -36,12 +36,11 @@ nlohmann::json json_of(const kernels::SurfaceRepairs& repairs) {
 }
 
 nlohmann::json json_of(const ScanRepairs& repairs) {
-  nlohmann::json json = json_of(repairs.surface);
-  json["polygons_triangulated"] = repairs.polygons_triangulated;
-  json["faces_skipped"] = repairs.faces_skipped;
-  json["bad_vertices"] = repairs.bad_vertices;
-  json["faces_of_bad_vertices"] = repairs.faces_of_bad_vertices;
-  json["bytes_after_end"] = repairs.bytes_after_end;
+  nlohmann::json json;
+  each_scan_repair(repairs, [&](const char* name, std::int64_t count) { json[name] = count; });
+  each_rare_repair(repairs, [&](const char* name, std::int64_t count) {
+    if (count == 0) json.erase(name);
+  });
   return json;
 }
 
@@ -62,7 +61,9 @@ ScanSurface read_surface(const std::filesystem::path& path, const std::string& x
                     .faces_skipped = scan.faces_skipped,
                     .bad_vertices = scan.bad_vertices,
                     .faces_of_bad_vertices = scan.faces_of_bad_vertices,
-                    .bytes_after_end = scan.bytes_after_end};
+                    .bytes_after_end = scan.bytes_after_end,
+                    .surplus_values = scan.surplus_values,
+                    .unknown_header_lines = scan.unknown_header_lines};
   return result;
 }
 

@@ -32,7 +32,31 @@ struct ScanRepairs {
   std::int64_t bad_vertices = 0;           ///< Dropped: not finite or implausibly large.
   std::int64_t faces_of_bad_vertices = 0;  ///< Triangles dropped with them.
   std::int64_t bytes_after_end = 0;        ///< Bytes behind all that the scan's header promises.
+  std::int64_t surplus_values = 0;         ///< Values of a text that its header does not declare.
+  std::int64_t unknown_header_lines = 0;   ///< Lines of a header that mean nothing.
+
+  bool operator==(const ScanRepairs&) const = default;
 };
+
+/// Calls visit(name, count) for every count that few scans have. JSON has it only if it is not 0.
+template <typename Repairs, typename Visit>
+void each_rare_repair(Repairs& repairs, const Visit& visit) {
+  visit("surplus_values", repairs.surplus_values);
+  visit("unknown_header_lines", repairs.unknown_header_lines);
+}
+
+/// Calls visit(name, count) for every count, under its name in JSON. `Repairs` is `ScanRepairs`,
+/// const or not.
+template <typename Repairs, typename Visit>
+void each_scan_repair(Repairs& repairs, const Visit& visit) {
+  each_repair(repairs.surface, visit);
+  visit("polygons_triangulated", repairs.polygons_triangulated);
+  visit("faces_skipped", repairs.faces_skipped);
+  visit("bad_vertices", repairs.bad_vertices);
+  visit("faces_of_bad_vertices", repairs.faces_of_bad_vertices);
+  visit("bytes_after_end", repairs.bytes_after_end);
+  each_rare_repair(repairs, visit);
+}
 
 /// The repaired surface of a scan file.
 struct ScanSurface {

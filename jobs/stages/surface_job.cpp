@@ -228,7 +228,7 @@ SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters&
   {
     ScanSurface scan = read_surface(job.input, job.input_xxh3);
     result.format = scan.format;
-    result.repairs = scan.built.repairs;
+    result.repairs = scan.repairs;
     header.repairs = json_of(scan.repairs);
     header.origin = {scan.built.origin.x(), scan.built.origin.y(), scan.built.origin.z()};
     PreparedSurface prepared =

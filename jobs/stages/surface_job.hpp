@@ -10,7 +10,6 @@
 #include "jobs/stages/scan_surface.hpp"
 #include "jobs/stages/surface_parameters.hpp"
 #include "kernels/repair/remeshing.hpp"
-#include "kernels/repair/surface_builder.hpp"
 
 namespace semigeo::jobs {
 
@@ -31,7 +30,7 @@ struct SurfaceJobResult {
   std::int64_t triangles = 0;
   std::int32_t parts = 0;
   std::int64_t levels = 0;
-  kernels::SurfaceRepairs repairs;
+  ScanRepairs repairs;
   PreparationResult preparation;
   kernels::RemeshCounts remeshed;  ///< Sum over all levels.
   bool vanished = false;           ///< The last level is only a triangle or a tetrahedron.

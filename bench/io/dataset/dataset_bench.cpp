@@ -1,6 +1,7 @@
 // Encoding, writing, verifying and reading a dataset of 163,842 vertices and three levels, on one
 // thread. The values are those of a rough surface: their mantissas are noise, as a scan's are.
 #include "io/dataset/dataset.hpp"
+#include "io/dataset/dataset_header.hpp"
 
 #include <benchmark/benchmark.h>
 

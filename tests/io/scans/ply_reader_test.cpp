@@ -218,7 +218,6 @@ TEST_F(PlyReader, RefusesBadValuesWithTheirLine) {
                {"line 11", "z coordinate", "not a finite"});
   expect_parts(ascii("0 0 0\n1 0 1e40\n0 1 0\n3 0 1 2\n"), {"line 11", "implausibly large"});
   expect_parts(ascii("0 0 0\n1 0\n0 1 0\n3 0 1 2\n"), {"line 11", "line ends where z should be"});
-  expect_parts(ascii("0 0 0\n1 0 0 0\n0 1 0\n3 0 1 2\n"), {"line 11", "more values"});
   expect_parts(ascii("0 0 0\n1 0 0\n0 1,5 0\n3 0 1 2\n"), {"line 12", "expected y, found '1,5'"});
   expect_parts(ascii("0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
                {"line 13", "vertex 3", "only 3", "from 0"});
@@ -227,6 +226,71 @@ TEST_F(PlyReader, RefusesBadValuesWithTheirLine) {
   expect_parts(ascii("0 0 0\n1 0 0\n0 1 0\n3 0 1"), {"line 13", "the file ends where"});
   expect_parts(ascii("0 0 0\n1 0 0\n0 1 0\n-3 0 1 2\n"), {"line 13", "negative"});
   expect_parts(ascii("0 0 0\n1 0 0\n0 1 0\n70000 0 1 2\n"), {"line 13", "more than 65535 corners"});
+}
+
+/// A line holds one record. What it has behind the record is surplus.
+TEST_F(PlyReader, CountsSurplusValues) {
+  const Scan scan =
+      read("a.ply", header("ascii", kTriangle) + "0 0 0 7\n1 0 0\n0 1 0 x 8 \n3 0 1 2 9\n");
+  EXPECT_EQ(scan.mesh.triangles, (Triangles{{0, 1, 2}}));
+  EXPECT_EQ(point(scan, 2), Eigen::Vector3d(0, 1, 0));
+  EXPECT_EQ(scan.surplus_values, 4);
+  EXPECT_EQ(read("b.ply", header("ascii", kTriangle) + kTriangleBody).surplus_values, 0);
+  // Two records in one line look like surplus until the file ends.
+  expect_parts(error("c.ply", header("ascii", kTriangle) + "0 0 0 1 0 0\n0 1 0\n3 0 1 2\n"),
+               {"promises 1 faces", "ends after 0", "line 10 has more values"});
+}
+
+TEST_F(PlyReader, ReadsRecordsThatGoOnInTheNextLine) {
+  const std::string declarations = "element vertex 3\n" + kXyz +
+                                   "property uchar red\nproperty list uchar int extra\n" +
+                                   "element face 1\nproperty list uchar int vertex_indices\n";
+  const Scan scan = read("a.ply", header("ascii", declarations) +
+                                      "0 0 0\n255\n0\n1\n0 0\n\n255 2\n7 8\n0 1 0\n255 0\n"
+                                      "3 0\n1\n2");
+  EXPECT_EQ(point(scan, 1), Eigen::Vector3d(1, 0, 0));
+  EXPECT_EQ(point(scan, 2), Eigen::Vector3d(0, 1, 0));
+  EXPECT_EQ(scan.mesh.triangles, (Triangles{{0, 1, 2}}));
+  EXPECT_EQ(scan.surplus_values, 0);
+  expect_parts(error("b.ply", header("ascii", declarations) + "0 0 0\n255 0\n1 0\n0 255 0 1\n"),
+               {"line 14", "the line ends where z should be"});
+  expect_parts(error("c.ply", header("ascii", declarations) + "0 0 0\n255 2\n7\n\n"),
+               {"line 14", "the file ends where extra should be"});
+}
+
+TEST_F(PlyReader, CountsHeaderLinesThatMeanNothing) {
+  const Scan scan = read(
+      "a.ply", header("ascii", "# made by x\nTextureFile a.png\n" + kTriangle) + kTriangleBody);
+  EXPECT_EQ(scan.mesh.triangles, (Triangles{{0, 1, 2}}));
+  EXPECT_EQ(scan.unknown_header_lines, 2);
+}
+
+TEST_F(PlyReader, ReadsIntegersOf64Bits) {
+  const std::string declarations =
+      "element vertex 3\nproperty int64 x\nproperty uint64 y\nproperty float z\n"
+      "element face 1\nproperty list uint64 int64 vertex_indices\n";
+  const std::string text = "-5000000000 0 0\n0 18446744073709551615 0\n0 1 0\n3 0 1 2\n";
+  const Scan ascii = read("a.ply", header("ascii", declarations) + text);
+  for (const std::endian order : {std::endian::little, std::endian::big}) {
+    const auto put = [&](auto value) { return bytes_of(value, order); };
+    std::string file = header(
+        order == std::endian::little ? "binary_little_endian" : "binary_big_endian", declarations);
+    file += put(std::int64_t{-5000000000}) + put(std::uint64_t{0}) + put(0.f);
+    file += put(std::int64_t{0}) + put(~std::uint64_t{0}) + put(0.f);
+    file += put(std::int64_t{0}) + put(std::uint64_t{1}) + put(0.f);
+    file += put(std::uint64_t{3});
+    for (const std::int64_t i : {0, 1, 2}) file += put(i);
+    const Scan scan = read("b.ply", file);
+    EXPECT_EQ(scan.mesh.triangles, ascii.mesh.triangles);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(point(scan, i), point(ascii, i));
+    EXPECT_EQ(point(scan, 0).x(), -5e9);
+    EXPECT_EQ(point(scan, 1).y(), std::ldexp(1.0, 64));
+  }
+  // A list can promise more bytes than 64 bits can count.
+  const std::string lists = "element vertex 1\nproperty list uint64 double a\n" + kXyz;
+  expect_parts(error("c.ply", header("binary_little_endian", lists) +
+                                  bytes_of((std::uint64_t{1} << 62) + 1) + std::string(40, '\0')),
+               {"promises 1 vertices", "ends after 0"});
 }
 
 TEST_F(PlyReader, RefusesBadBinaryValuesWithTheirByte) {

@@ -58,6 +58,17 @@ Seed ascii_ply() {
   return {"ascii.ply", text + "8 0 4 1 5 -1 2 6 3\n"};
 }
 
+/// Groups of values on lines of their own, a value too many, and a line that means nothing.
+Seed loose_ply() {
+  std::string text =
+      "ply\nformat ascii 1.0\nmade by x\nelement vertex 16\nproperty float x\nproperty int64 y\n"
+      "property float z\nproperty uchar red\nelement face 3\n"
+      "property list uint64 int64 vertex_indices\nend_header\n";
+  for (int i = 0; i < 16; ++i)
+    text += std::to_string(i % 4) + " " + std::to_string(i / 4) + " 2\n255\n";
+  return {"loose.ply", text + "3 0 1 4 7\n4 0 1\n5 4\n6 0 1 2 6 9 4 8 8\n"};
+}
+
 Seed binary_ply(std::endian order) {
   const auto put = [&](auto value) { return bytes_of(value, order); };
   const bool little = order == std::endian::little;
@@ -110,7 +121,8 @@ std::vector<Seed> plain_seeds() {
           {"a.off", off},
           binary_off(),
           {"ascii.stl", facets + "endsolid a b\n"},
-          binary_stl()};
+          binary_stl(),
+          loose_ply()};
 }
 
 std::vector<Seed> seeds() {

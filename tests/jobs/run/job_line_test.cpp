@@ -38,8 +38,10 @@ void every_field_of_result(Result& result, const Visit& visit) {
       result;
   visit_each(visit, format, vertices, triangles, parts, levels, vanished);
   {
-    auto& [a, b, c, d, e, f, g, h, i] = repairs;
-    visit_each(visit, a, b, c, d, e, f, g, h, i);
+    auto& [surface, a, b, c, d, e, f, g] = repairs;
+    visit_each(visit, a, b, c, d, e, f, g);
+    auto& [h, i, j, k, l, m, n, o, p] = surface;
+    visit_each(visit, h, i, j, k, l, m, n, o, p);
   }
   {
     auto& [holes, a, b, c, d, tolerance, distance] = preparation;

@@ -78,7 +78,7 @@ TEST_F(SurfaceJobTest, DatasetOfASphere) {
   EXPECT_EQ(result.triangles, 1280);
   EXPECT_EQ(result.parts, 1);
   EXPECT_EQ(result.levels, 4);
-  EXPECT_EQ(result.repairs, kernels::SurfaceRepairs{});
+  EXPECT_EQ(result.repairs, ScanRepairs{});
 
   const io::Dataset dataset(job.output);
   dataset.verify();
@@ -267,6 +267,20 @@ TEST_F(SurfaceJobTest, RepairsAreCountedInTheDataset) {
                             {"bad_vertices", 0},
                             {"faces_of_bad_vertices", 0}}));
   EXPECT_EQ(json_of(result.repairs).at("isolated_vertices"), 2);
+}
+
+/// What few scans have is named only in their datasets.
+TEST_F(SurfaceJobTest, WhatTheReaderToleratesIsCountedInTheDataset) {
+  std::ofstream(folder_ / "scan.ply")
+      << "ply\nformat ascii 1.0\n# by hand\nelement vertex 4\nproperty float x\nproperty float y\n"
+         "property float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n"
+         "0 0 0 9\n1 0 0 9\n0 1 0 9\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+  const SurfaceJob job = job_for(folder_ / "scan.ply");
+  const SurfaceJobResult result = run(job, {.levels = 1});
+  EXPECT_EQ(result.repairs.surplus_values, 3);
+  const nlohmann::json repairs = io::Dataset(job.output).header().repairs;
+  EXPECT_EQ(repairs.at("surplus_values"), 3);
+  EXPECT_EQ(repairs.at("unknown_header_lines"), 1);
 }
 
 TEST_F(SurfaceJobTest, AScanWithoutUsableTrianglesIsRefused) {
