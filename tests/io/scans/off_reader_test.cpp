@@ -72,7 +72,7 @@ TEST_F(OffReader, RefusesCutBinaryFiles) {
 TEST_F(OffReader, RefusesOtherDimensionsAndOtherFiles) {
   for (const std::string keyword : {"4OFF", "nOFF", "C4OFF", "4nOFF"})
     expect_parts(error("a.off", keyword + "\n3 1 0\n"), {"line 1", "three dimensions"});
-  expect_parts(error("a.off", "ply\n"), {"line 1", "not an OFF file"});
+  expect_parts(error("a.off", "ply\n"), {"the file is a PLY file"});
   expect_parts(error("a.off", "SOFF\n"), {"line 1", "not an OFF file"});
   expect_parts(error("a.off", "# only this"), {"nothing but comments"});
 }

@@ -303,7 +303,8 @@ TEST_F(PlyReader, RefusesBadBinaryValuesWithTheirByte) {
 }
 
 TEST_F(PlyReader, RefusesBadHeaders) {
-  expect_parts(error("a.ply", "OFF\n"), {"line 1", "not a PLY file"});
+  expect_parts(error("a.ply", "OFF\n"), {"the file is an OFF file"});
+  expect_parts(error("a.ply", "OBJ\n"), {"line 1", "not a PLY file"});
   expect_parts(error("a.ply", std::string(100'000, 'p')), {"not a PLY file"});
   expect_parts(error("a.ply", "ply\nformat ascii 1.0\nelement vertex 3\n"),
                {"ends within its header"});
