@@ -32,13 +32,12 @@ bool is_variant(const std::string& name, const std::string& base) {
                           name.starts_with(base + std::string(kMark)));
 }
 
-/// Returns whether the scan is gone. A scan about which nothing can be known is not gone.
+}  // namespace
+
 bool is_gone(const fs::path& scan) {
   std::error_code error;
   return fs::status(scan, error).type() == fs::file_type::not_found;
 }
-
-}  // namespace
 
 Sources Sources::read(const fs::path& archive) {
   Sources sources;

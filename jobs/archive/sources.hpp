@@ -21,12 +21,17 @@ class Sources {
   const std::map<std::string, std::filesystem::path>& by_name() const { return by_name_; }
   /// Gives the name to a scan, unless it belongs to another scan that still exists.
   void claim(const std::string& name, const std::filesystem::path& scan);
+  /// Frees the name.
+  void forget(const std::string& name) { by_name_.erase(name); }
   /// Replaces the archive's file if its content is different.
   void write(const std::filesystem::path& archive) const;
 
  private:
   std::map<std::string, std::filesystem::path> by_name_;
 };
+
+/// Returns whether the scan is gone. A scan about which nothing can be known is not gone.
+bool is_gone(const std::filesystem::path& scan);
 
 /// A scan that needs a name.
 struct Unnamed {

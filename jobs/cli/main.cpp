@@ -59,6 +59,7 @@ int run(int argc, char** argv) {
       "  semigeo status archive                  how far is it?\n"
       "  semigeo info archive                    what is in it\n"
       "  semigeo check archive                   is every byte as it was written?\n"
+      "  semigeo prune archive                   remove what is of scans that are gone\n"
       "  semigeo recognise scene.ply --library archive   which models are in it, and where\n"
       "  semigeo export archive/scans/x.ply.vtkhdf --level 4 --output smooth.ply\n"
       "  semigeo bench                           how fast is this machine?\n");
@@ -74,6 +75,7 @@ int run(int argc, char** argv) {
   add_recognise(app, exit_code);
   add_info(app, exit_code);
   add_check(app, exit_code);
+  add_prune(app, exit_code);
   add_export(app, exit_code);
   add_bench(app, exit_code);
   add_job(app, exit_code);

@@ -84,7 +84,7 @@ int recognise(RecogniseOptions& options) {
              const auto print = options.execution.json ? print_recognised_json : print_recognised;
              print(result, library, report);
            },
-       .passed_over = scenes.passed_over});
+       .notes = [&] { return RunNotes{.passed_over = scenes.passed_over}; }});
 }
 
 void add_options(CLI::App* command, RecogniseOptions& options) {

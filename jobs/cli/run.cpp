@@ -1,10 +1,14 @@
+#include <algorithm>
+#include <iterator>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "io/files/atomic_file.hpp"
 #include "io/files/error.hpp"
 #include "io/scans/scan_reader.hpp"
 #include "jobs/cli/command.hpp"
+#include "jobs/cli/leftovers_report.hpp"
 #include "jobs/cli/output.hpp"
 #include "jobs/cli/run_plan.hpp"
 #include "jobs/cli/surface_options.hpp"
@@ -23,6 +27,65 @@ struct RunOptions {
   SurfaceOptions surface;
   ExecutionOptions execution;
   bool library = false;  ///< A library of all datasets of the archive is made as well.
+  bool prune = false;    ///< What is of scans that are gone is removed.
+};
+
+/// Finds and removes what the archive has of scans that are gone from the folders of a run.
+class Pruning {
+ public:
+  explicit Pruning(const RunOptions& options) : options_(options) {
+    std::error_code ignored;
+    std::ranges::copy_if(options.inputs, std::back_inserter(folders_),
+                         [&](const fs::path& input) { return fs::is_directory(input, ignored); });
+  }
+
+  /// Looks for leftovers when it is known which names the scans of the run have.
+  void find(const std::vector<PlannedJob>& surfaces) {
+    std::set<std::string> in_use;
+    for (const PlannedJob& planned : surfaces) in_use.insert(planned.job.name);
+    found_ = find_leftovers(options_.archive, folders_, in_use);
+  }
+
+  /// Takes out the models whose datasets are going to be removed.
+  void leave_out(std::vector<LibraryModel>& models) const {
+    if (!removes()) return;
+    std::set<std::string> gone;
+    for (const Leftover& leftover : found_.list)
+      if (leftover.kind == Leftover::Kind::kDataset) gone.insert(leftover.name);
+    std::erase_if(models, [&](const LibraryModel& model) { return gone.contains(model.name); });
+  }
+
+  /// Removes the leftovers. The jobs run even if they cannot be removed.
+  void remove() {
+    if (!options_.prune) return;
+    if (!found_.emptied.empty()) complain(reason_to_ask(found_));
+    if (!removes()) return;
+    try {
+      remove_leftovers(options_.archive, found_.list);
+      removed_ = true;
+    } catch (const io::Error& e) {
+      complain(e);
+    }
+  }
+
+  JobSummary told() const {
+    if (found_.list.empty()) return {};
+    const std::string counts = counts_in_words(found_.list);
+    JobSummary told;
+    told.fields = {{removed_ ? "pruned" : "leftovers", leftovers_json(found_.list)}};
+    told.text = removed_ ? "pruned: " + counts
+                         : "leftovers: " + counts +
+                               "; to remove them: " + prune_command(options_.archive, folders_);
+    return told;
+  }
+
+ private:
+  bool removes() const { return options_.prune && found_.emptied.empty(); }
+
+  const RunOptions& options_;
+  std::vector<fs::path> folders_;
+  Leftovers found_;
+  bool removed_ = false;
 };
 
 /// Writes the configuration into the archive if it has none yet, and records the scans of its
@@ -35,13 +98,17 @@ void prepare_archive(const fs::path& archive, const std::string& effective_confi
 }
 
 std::vector<PlannedJob> make_plan(const RunOptions& options, const std::vector<FoundScan>& scans,
-                                  DigestCache& cache) {
+                                  DigestCache& cache, Pruning& pruning) {
   const fs::path& archive = options.archive;
   const int threads = options.execution.limits.threads;
   std::vector<PlannedJob> plan =
       plan_surfaces(archive, scans, options.surface.parameters, cache, threads);
-  if (options.library)
-    plan_library(plan, models_of(archive, plan, cache), place_of_archive(archive), {});
+  pruning.find(plan);
+  if (options.library) {
+    std::vector<LibraryModel> models = models_of(archive, plan, cache);
+    pruning.leave_out(models);
+    plan_library(plan, models, place_of_archive(archive), {});
+  }
   if (options.execution.verify) {
     verify_surfaces(plan, threads);
     verify_library_plan(plan);
@@ -61,15 +128,21 @@ int find_and_run(const RunOptions& options, const std::string& effective_config)
     complain("no ", io::scan_extensions(", ", " or "), " file (or .gz of one) was found");
     return kUsage;
   }
+  Pruning pruning(options);
   return run_plan(
       options.execution,
       {.home = options.archive,
-       .plan = [&](DigestCache& cache) { return make_plan(options, found.scans, cache); },
+       .plan = [&](DigestCache& cache) { return make_plan(options, found.scans, cache, pruning); },
        .prepare =
            [&](const std::vector<PlannedJob>& plan) {
              prepare_archive(options.archive, effective_config, plan);
+             pruning.remove();
            },
-       .passed_over = found.passed_over});
+       .must_write = options.prune,
+       .notes =
+           [&] {
+             return RunNotes{found.passed_over, pruning.told()};
+           }});
 }
 
 void add_options(CLI::App* command, RunOptions& options) {
@@ -88,6 +161,9 @@ void add_options(CLI::App* command, RunOptions& options) {
       "--library", options.library,
       "Also build ARCHIVE/library.h5, in which scenes are recognised, of all datasets\n"
       "of the archive");
+  command->add_flag("--prune", options.prune,
+                    "Also remove what the archive has of scans that are gone from the folders, as\n"
+                    "`semigeo prune` does");
   add_execution_options(*command, options.execution);
 }
 
@@ -110,6 +186,7 @@ void add_run(CLI::App& app, int& exit_code) {
       "  semigeo run scans/ --output archive --dry-run --explain   what differs\n"
       "  semigeo run scans/ --output archive --verify    also what the disk has damaged since\n"
       "  semigeo run scans/ --output archive --library   and a hash library of all datasets\n"
+      "  semigeo run scans/ --output archive --prune     removes what is of scans that are gone\n"
       "  semigeo run scans/ --output archive --executor slurm --slurm-option partition=long\n"
       "  semigeo run scans/ --output archive --executor slurm --no-wait   run again to see the "
       "rest\n"

@@ -28,7 +28,7 @@ int dry_run(const ExecutionOptions& options, const PlanSource& source) {
     print_text(options.graph == GraphFormat::kDot ? to_dot(graph)
                                                   : io::printable_json(to_json(graph)));
   } else {
-    print_plan(plan, options.json, options.explain, source.passed_over);
+    print_plan(plan, options.json, options.explain, source.notes());
   }
   return std::ranges::all_of(plan, is_readable) ? kAllDone : kSomeFailed;
 }
@@ -80,9 +80,9 @@ int print_results(const ExecutionOptions& options, const PlanSource& source,
   if (source.print) {
     source.print(result);
   } else if (options.json) {
-    print_json(result, source.passed_over);
+    print_json(result, source.notes());
   } else {
-    print_run(result, source.passed_over);
+    print_run(result, source.notes());
   }
   if (result.summary.not_run > 0) return kStoppedEarly;
   return result.summary.failed == 0 ? kAllDone : kSomeFailed;
@@ -110,7 +110,8 @@ int run(const ExecutionOptions& options, const PlanSource& source) {
                .threads = options.limits.threads,
                .verify = options.verify,
                .is_archive = source.is_archive,
-               .is_kept = source.is_kept},
+               .is_kept = source.is_kept,
+               .must_write = source.must_write},
               hooks);
   return exit_code;
 }

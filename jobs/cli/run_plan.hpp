@@ -6,6 +6,7 @@
 
 #include "jobs/archive/digest_cache.hpp"
 #include "jobs/cli/execution_options.hpp"
+#include "jobs/cli/run_report.hpp"
 #include "jobs/plan/plan.hpp"
 #include "jobs/run/run.hpp"
 
@@ -19,12 +20,13 @@ struct PlanSource {
   std::function<std::vector<PlannedJob>(DigestCache&)> plan;
   /// Prepares the folder after it was locked, before jobs run. It may write.
   std::function<void(const std::vector<PlannedJob>&)> prepare = {};
-  bool is_archive = true;  ///< The folder is an archive; rates of its jobs are learned.
-  bool is_kept = true;     ///< The folder is kept; otherwise it gets neither lock nor journal.
+  bool is_archive = true;   ///< The folder is an archive; rates of its jobs are learned.
+  bool is_kept = true;      ///< The folder is kept; otherwise it gets neither lock nor journal.
+  bool must_write = false;  ///< The folder must be writable even if no job has to run.
   /// Prints the results instead of the report of a run.
   std::function<void(const RunResult&)> print = {};
-  /// The files that the search for scans has passed over, for the report.
-  PassedOver passed_over = {};
+  /// Returns what the report says besides the jobs. It is called after the plan was made.
+  std::function<RunNotes()> notes = [] { return RunNotes(); };
 };
 
 /// Makes the plan and runs it, or says which jobs would run. Prints results and returns an exit

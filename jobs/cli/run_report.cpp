@@ -87,8 +87,22 @@ void add_passed_over(nlohmann::json& document, const PassedOver& passed_over) {
   if (!passed_over.files.empty()) document["passed_over"] = passed_over.files;
 }
 
+namespace {
+
+void print_notes(const RunNotes& notes) {
+  print_passed_over(notes.passed_over);
+  if (!notes.leftovers.text.empty()) print(notes.leftovers.text, "\n");
+}
+
+void add_notes(nlohmann::json& document, const RunNotes& notes) {
+  add_passed_over(document, notes.passed_over);
+  for (const auto& [name, value] : notes.leftovers.fields) document[name] = value;
+}
+
+}  // namespace
+
 void print_plan(const std::vector<PlannedJob>& plan, bool json, bool explain,
-                const PassedOver& passed_over) {
+                const RunNotes& notes) {
   if (json) {
     nlohmann::json document = {{"scans", nlohmann::json::array()}};
     for (const PlannedJob& p : plan) {
@@ -98,7 +112,7 @@ void print_plan(const std::vector<PlannedJob>& plan, bool json, bool explain,
       if (!p.error.empty()) entry["error"] = p.error;
       add_to(document, p, std::move(entry));
     }
-    add_passed_over(document, passed_over);
+    add_notes(document, notes);
     print_document(document);
     return;
   }
@@ -113,12 +127,12 @@ void print_plan(const std::vector<PlannedJob>& plan, bool json, bool explain,
     if (!explain) continue;
     for (const Reason& reason : p.reasons) print("    ", in_words(reason), "\n");
   }
-  print_passed_over(passed_over);
+  print_notes(notes);
   if (!scans.empty()) print_counts(scans);
   if (!others.empty()) print_counts(others);
 }
 
-void print_json(const RunResult& result, const PassedOver& passed_over) {
+void print_json(const RunResult& result, const RunNotes& notes) {
   const RunSummary& summary = result.summary;
   nlohmann::json document = {{"scans", nlohmann::json::array()},
                              {"done", summary.done},
@@ -131,7 +145,7 @@ void print_json(const RunResult& result, const PassedOver& passed_over) {
                              {"wall_seconds", summary.wall_seconds},
                              {"cpu_seconds", summary.cpu_seconds},
                              {"peak_memory_bytes", summary.peak_bytes}};
-  add_passed_over(document, passed_over);
+  add_notes(document, notes);
   for (std::size_t i = 0; i < result.plan.size(); ++i) {
     const Job& job = result.plan[i].job;
     const JobOutcome& outcome = result.outcomes[i];
@@ -149,7 +163,7 @@ void print_json(const RunResult& result, const PassedOver& passed_over) {
   print_document(document);
 }
 
-void print_run(const RunResult& result, const PassedOver& passed_over) {
+void print_run(const RunResult& result, const RunNotes& notes) {
   for (const JobKind* kind : kinds_of(result.plan)) print_reports(result, *kind);
   for (const JobOutcome& outcome : result.outcomes)
     if (outcome.state == JobState::kFailed) print("failed: ", outcome.error, "\n");
@@ -157,7 +171,7 @@ void print_run(const RunResult& result, const PassedOver& passed_over) {
     const Job& job = result.plan[i].job;
     if (const auto told = job.kind->summary(job, result.outcomes[i].state)) print(told->text, "\n");
   }
-  print_passed_over(passed_over);
+  print_notes(notes);
   const RunSummary& summary = result.summary;
   const std::string rate =
       summary.vertex_levels > 0 ? short_number(summary.rate()) + " vertex levels/s; " : "";

@@ -4,23 +4,30 @@
 #include <vector>
 
 #include "jobs/archive/find_scans.hpp"
+#include "jobs/plan/job_kind.hpp"
 #include "jobs/plan/plan.hpp"
 #include "jobs/run/run.hpp"
 #include "jobs/slurm/slurm_runner.hpp"
 
 namespace semigeo::jobs::cli {
 
+/// What a report says besides the jobs.
+struct RunNotes {
+  PassedOver passed_over = {};  ///< The files that the search has passed over.
+  JobSummary leftovers = {};    ///< What the archive has of scans that are gone; or no text.
+};
+
 /// Prints on stdout which jobs would run, and why, as JSON or as text. In text `explain` adds a
-/// line for each difference; JSON always has them. `passed_over` are files that are no scans.
+/// line for each difference; JSON always has them.
 void print_plan(const std::vector<PlannedJob>& plan, bool json, bool explain,
-                const PassedOver& passed_over = {});
+                const RunNotes& notes = {});
 
 /// Prints on stdout what a run has done, as one JSON document.
-void print_json(const RunResult& result, const PassedOver& passed_over = {});
+void print_json(const RunResult& result, const RunNotes& notes = {});
 
 /// Prints on stdout what a run has done as text: a line for each report of a job, then the
-/// failures, the summary of a library, the files that were passed over, and the totals.
-void print_run(const RunResult& result, const PassedOver& passed_over = {});
+/// failures, the summary of a library, the notes, and the totals.
+void print_run(const RunResult& result, const RunNotes& notes = {});
 
 /// Prints on stdout the files that were passed over as text, if there are any.
 void print_passed_over(const PassedOver& passed_over);

@@ -17,14 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path folder_of(const fs::path& folder) {
-  return folder / "recognised";
-}
-
-fs::path recognised_path(const fs::path& folder, const std::string& name) {
-  return folder_of(folder) / (name + ".json");
-}
-
 /// Returns whether the folder has a recognised file of this name, made of a scene with these bytes.
 bool is_of(const fs::path& folder, const std::string& name, const std::string& xxh3) {
   try {
@@ -37,6 +29,14 @@ bool is_of(const fs::path& folder, const std::string& name, const std::string& x
 }
 
 }  // namespace
+
+fs::path recognised_folder(const fs::path& folder) {
+  return folder / "recognised";
+}
+
+fs::path recognised_path(const fs::path& folder, const std::string& name) {
+  return recognised_folder(folder) / (name + ".json");
+}
 
 SearchedLibrary searched_library(const fs::path& file_or_archive) {
   std::error_code error;
@@ -77,7 +77,7 @@ std::vector<PlannedJob> plan_recognition(const std::vector<FoundScan>& scenes,
     unnamed.push_back({scenes[i].name, scenes[i].file, data[i].input_xxh3});
   }
   const auto names = choose_names(
-      unnamed, Sources::read(folder_of(folder)),
+      unnamed, Sources::read(recognised_folder(folder)),
       [&](const std::string& name, const std::string& xxh3) { return is_of(folder, name, xxh3); });
   for (std::size_t i = 0; i < plan.size(); ++i) {
     Job& job = plan[i].job;
@@ -92,11 +92,11 @@ std::vector<PlannedJob> plan_recognition(const std::vector<FoundScan>& scenes,
 
 void record_scenes(const fs::path& folder, const std::vector<PlannedJob>& plan) {
   std::error_code ignored;  // writing says why
-  fs::create_directories(folder_of(folder), ignored);
-  Sources sources = Sources::read(folder_of(folder));
+  fs::create_directories(recognised_folder(folder), ignored);
+  Sources sources = Sources::read(recognised_folder(folder));
   for (const PlannedJob& planned : plan)
     if (is_readable(planned)) sources.claim(planned.job.name, planned.scan);
-  sources.write(folder_of(folder));
+  sources.write(recognised_folder(folder));
 }
 
 }  // namespace semigeo::jobs

@@ -31,6 +31,11 @@ std::vector<PlannedJob> plan_recognition(const std::vector<FoundScan>& scenes,
                                          const SearchParameters& parameters,
                                          const std::filesystem::path& folder, int threads);
 
+/// Returns the folder in which a folder of results keeps its files.
+std::filesystem::path recognised_folder(const std::filesystem::path& folder);
+/// Returns the file about the scene of this name.
+std::filesystem::path recognised_path(const std::filesystem::path& folder, const std::string& name);
+
 /// Writes into the folder of which scenes its files are made, as record_sources does for datasets.
 /// Call it before the files are made. Throws io::Error if it cannot be written.
 void record_scenes(const std::filesystem::path& folder, const std::vector<PlannedJob>& plan);

@@ -69,7 +69,8 @@ class Run {
     if (!settings_.verify) cache_ = DigestCache::read(settings_.home);
     result_.plan = hooks_.plan(cache_);
     result_.summary.up_to_date = std::ranges::count_if(result_.plan, &PlannedJob::up_to_date);
-    if (unwritable_ && jobs_to_run() > 0) std::rethrow_exception(unwritable_);
+    if (unwritable_ && (jobs_to_run() > 0 || settings_.must_write))
+      std::rethrow_exception(unwritable_);
   }
 
   std::int64_t jobs_to_run() const { return std::ssize(result_.plan) - result_.summary.up_to_date; }

@@ -39,6 +39,7 @@ struct RunSettings {
   bool verify = false;          ///< Outputs are read instead of trusting the digest cache.
   bool is_archive = true;       ///< The home is an archive; rates of its jobs are learned.
   bool is_kept = true;          ///< The home is kept; otherwise it gets neither lock nor journal.
+  bool must_write = false;      ///< A home that cannot be written is a failure in any case.
 };
 
 /// The plan of a run and what has become of its jobs.

@@ -15,7 +15,7 @@ from support import PROGRAM, TIMEOUT, SemigeoTest, boulder, joined, write_ply
 from pages import split_blocks
 
 PAGES = ("README.md", "docs/usage.md", "docs/recognition.md", "docs/python.md")
-COMMANDS = ("run", "recognise", "export", "info", "status", "check", "library")
+COMMANDS = ("run", "recognise", "export", "info", "status", "check", "library", "prune")
 
 
 def runnable_blocks(page):

@@ -16,7 +16,7 @@ import h5py
 
 from support import PROGRAM, SemigeoTest, icosphere, obj_text, plane, write_ply
 
-COMMANDS = ("run", "info", "check", "export")
+COMMANDS = ("run", "info", "check", "export", "prune")
 
 
 class UsageTest(SemigeoTest):
