@@ -114,7 +114,8 @@ LevelReport LevelMeter::measure(const jobs::LevelFields& fields,
   report.vertices = mesh_.vertex_count();
   report.triangles = mesh_.connectivity.face_count();
   report.parts = fields.parts;
-  for (const jobs::PartMeasure& part : jobs::measure_parts(mesh_, context)) {
+  for (const jobs::PartMeasure& part :
+       jobs::measure_parts(mesh_, std::numeric_limits<double>::infinity(), context)) {
     report.boundary_edges += part.boundary_edges;
     report.volume += part.volume();
     report.area += part.twice_area / 2;

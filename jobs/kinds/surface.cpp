@@ -34,6 +34,11 @@ static void each_field(SurfaceJobResult& r, const Visit& visit) {
   visit("levels", r.levels);
   visit("vanished", r.vanished);
   each_scan_repair(r.repairs, visit);
+  visit("mean_edge_length", r.quality.mean_edge_length);
+  visit("coordinate_step", r.quality.coordinate_step);
+  visit("weld_distance", r.quality.weld_distance);
+  visit("without_patch", r.quality.without_patch);
+  visit("on_small_parts", r.quality.on_small_parts);
   visit("holes_loops", r.preparation.holes.loops);
   visit("holes_filled", r.preparation.holes.filled);
   visit("holes_outer", r.preparation.holes.outer);
@@ -83,18 +88,53 @@ static void from_json(const json& object, SurfaceJobData& data) {
 
 namespace {
 
+/// Curvature is noise if coordinates go in longer steps, in mean edge lengths.
+constexpr double kCoarseStep = 1e-3;
+
+json quality_json(const ScanQuality& quality) {
+  return {{"mean_edge_length", quality.mean_edge_length},
+          {"coordinate_step", quality.coordinate_step},
+          {"weld_distance", quality.weld_distance},
+          {"without_patch", quality.without_patch},
+          {"on_small_parts", quality.on_small_parts}};
+}
+
 /// Returns "3 welded vertices, 1 split vertices"; empty if nothing was repaired.
-std::string in_words(const ScanRepairs& repairs) {
+std::string repairs_in_words(const SurfaceJobResult& result) {
   std::string text;
-  json counts = json_of(repairs);
+  json counts = json_of(result.repairs);
   counts.erase("polygons_triangulated");  // nothing is wrong with polygons
   for (const auto& [name, count] : counts.items()) {
     if (count.get<std::int64_t>() == 0) continue;
     std::string words = name;
     std::ranges::replace(words, '_', ' ');
     text += (text.empty() ? "" : ", ") + count.dump() + " " + words;
+    if (name == "gap_vertices")
+      text += " (gaps of at most " + io::number_text(result.quality.weld_distance) + ")";
   }
   return text;
+}
+
+/// Returns in words why curvatures of the scan are missing or noise, and what to do; or an empty
+/// text.
+std::string doubts_in_words(const SurfaceJobResult& result) {
+  const ScanQuality& quality = result.quality;
+  std::string text;
+  if (quality.coordinate_step > kCoarseStep * quality.mean_edge_length)
+    text =
+        "coordinates go in steps of " + io::number_text(quality.coordinate_step) + ", edges are " +
+        io::number_text(quality.mean_edge_length) +
+        " long: curvature is noise; export the scan in double precision, or nearer to its origin";
+  if (2 * quality.without_patch <= result.vertices) return text;
+  text += (text.empty() ? "" : ". ") + std::to_string(quality.without_patch) + " of " +
+          std::to_string(result.vertices) + " vertices have no curvature at level 0: ";
+  if (2 * quality.on_small_parts > quality.without_patch)
+    return text +
+           "they lie on parts smaller than a patch; close gaps with --weld LENGTH, or join "
+           "the surface when it is exported";
+  return text +
+         "patches do not fit onto triangles so uneven; give a smaller --step, even them out "
+         "with --decimate, or remesh the scan";
 }
 
 std::string in_words(const kernels::HoleCounts& holes) {
@@ -222,10 +262,12 @@ class SurfaceKind final : public TypedJobKind<SurfaceJobData, SurfaceJobResult> 
                      {"parts", made.parts},
                      {"levels", made.levels},
                      {"repairs", json_of(made.repairs)},
+                     {"quality", quality_json(made.quality)},
                      {"preparation", json_of(made.preparation, wanted)},
                      {"vanished", made.vanished},
                      {"remeshing", json_of(made.remeshed)}};
-    report.lines = {{"repaired", in_words(made.repairs)},
+    report.lines = {{"repaired", repairs_in_words(made)},
+                    {"doubtful", doubts_in_words(made)},
                     {"prepared", in_words(made.preparation)},
                     {"evolved", evolution_in_words(made)}};
     return report;

@@ -81,9 +81,10 @@ std::vector<std::int32_t> order_by_source(const std::vector<std::int32_t>& sourc
 EvolvingSurface::EvolvingSurface(kernels::Surface surface, const EvolutionOptions& options,
                                  const engine::RunContext& context, Origins origins)
     : context_(context), options_(options), instruction_set_(chosen_instruction_set()) {
-  const double mean = kernels::mean_edge_length(surface);
-  if (mean > 0) unit_ = std::exp2(std::round(std::log2(mean)));
-  mean_edge_length_ = first_edge_length_ = mean / unit_;
+  const kernels::EdgeLengths lengths = kernels::edge_lengths(surface);
+  if (lengths.mean > 0) unit_ = std::exp2(std::round(std::log2(lengths.mean)));
+  mean_edge_length_ = first_edge_length_ = lengths.mean / unit_;
+  first_edge_limit_ = lengths.limit / unit_;
   first_step_ = options_.step_factor * mean_edge_length_;
   set_step(first_step_);
 
@@ -105,7 +106,7 @@ EvolvingSurface::EvolvingSurface(kernels::Surface surface, const EvolutionOption
   mesh_.part_count = surface.part_count;
   mesh_.connectivity = std::move(surface);
   target_faces_ = mesh_.connectivity.face_count();
-  part_reference_ = measure_parts(mesh_, context_);
+  part_reference_ = measure_parts(mesh_, edge_limit(), context_);
 
   adopt_mesh();
   angle_weighted_normals();
@@ -139,6 +140,12 @@ void EvolvingSurface::set_step(double step) {
   step_ = step;
   const double edges = mean_edge_length_ > 0 ? step / mean_edge_length_ : 1;
   max_crossings_ = static_cast<int>(kernels::kMaxCrossings * std::max(1.0, edges / 4));
+}
+
+/// Returns the length above which edges are outliers. Coarser meshes have longer ones.
+double EvolvingSurface::edge_limit() const {
+  if (!(first_edge_length_ > 0)) return first_edge_limit_;
+  return first_edge_limit_ * std::max(1.0, mean_edge_length_ / first_edge_length_);
 }
 
 void EvolvingSurface::angle_weighted_normals() {
@@ -303,7 +310,7 @@ std::vector<PartMeasure> EvolvingSurface::restore_size() {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
     double factor = 1;
   };
-  std::vector<PartMeasure> parts = measure_parts(mesh_, context_);
+  std::vector<PartMeasure> parts = measure_parts(mesh_, edge_limit(), context_);
   if (options_.rescale == Rescale::kNone || options_.schedule != Schedule::kUniform) return parts;
   std::vector<Restoration> restorations(parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -337,7 +344,7 @@ std::vector<PartMeasure> EvolvingSurface::coarsen(std::vector<PartMeasure> parts
   if (coarsened == kernels::RemeshCounts{}) return parts;
   counts += coarsened;
   target_faces_ = std::min(target_faces_, mesh_.connectivity.face_count());
-  return measure_parts(mesh_, context_);
+  return measure_parts(mesh_, edge_limit(), context_);
 }
 
 /// Coarsens the moved mesh under octaves, and removes odd triangles and parts on which no patch was
@@ -357,6 +364,7 @@ std::vector<PartMeasure> EvolvingSurface::remesh(std::vector<PartMeasure> parts)
   RemeshResult result = remesh_surface(mesh_, std::move(parts),
                                        {.curved = options_.curved,
                                         .first_edge_length = first_edge_length_,
+                                        .edge_limit = edge_limit(),
                                         .faces = target_faces_,
                                         .dropped = dropped},
                                        context_);

@@ -138,6 +138,7 @@ class EvolvingSurface {
   std::vector<PartMeasure> remesh(std::vector<PartMeasure> parts);
   void adopt_mesh();
   LevelConnectivity connectivity() const;
+  double edge_limit() const;
 
   engine::RunContext context_;
   EvolutionOptions options_;
@@ -150,6 +151,7 @@ class EvolvingSurface {
   double unit_ = 1;                           ///< Scan units per internal unit.
   double mean_edge_length_ = 0;               ///< In internal units.
   double first_edge_length_ = 0;              ///< Mean edge length of level 0.
+  double first_edge_limit_ = 0;               ///< Longer edges of level 0 are outliers.
   double step_ = 0;                           ///< Sample distance of this level, in internal units.
   double first_step_ = 0;                     ///< Sample distance of level 0.
   int max_crossings_ = kernels::kMaxCrossings;

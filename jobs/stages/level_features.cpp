@@ -23,6 +23,9 @@ using kernels::Feature;
 using kernels::FeatureKind;
 using kernels::SampledContours;
 
+/// The largest number of pieces into which a contour is cut for each face that it crosses, in the
+/// mean. On meshes without outliers it is never reached (see `kernels::edge_lengths`).
+constexpr double kMostPieces = 20;
 constexpr std::int64_t kVertexBlock = 4096;
 constexpr std::int64_t kPeakBlock = 64;
 constexpr std::int64_t kContourBlock = 16;
@@ -226,7 +229,11 @@ class Finder {
     std::vector<Eigen::Vector3d> polyline;
     polyline.reserve(crossings.size());
     for (const EdgePoint& e : crossings) polyline.push_back(point_at(e));
-    const kernels::ArcSamples samples = kernels::resample(polyline, closed, contour_spacing_);
+    const double length = kernels::length_of(polyline, closed);
+    // A contour that crosses the faces of a vertex far out would have no end of samples.
+    const double spacing =
+        std::max(contour_spacing_, length / (kMostPieces * static_cast<double>(polyline.size())));
+    const kernels::ArcSamples samples = kernels::resample(polyline, closed, spacing);
     const auto next = [&](const ArcPoint& p) {
       return p.segment + 1 < static_cast<std::int32_t>(polyline.size()) ? p.segment + 1 : 0;
     };
@@ -238,7 +245,7 @@ class Finder {
 
     Contour result;
     result.closed = closed;
-    result.length = kernels::length_of(polyline, closed);
+    result.length = length;
     result.points.reserve(points.size());
     for (const Eigen::Vector3d& p : points) result.points.push_back(p.cast<float>());
     result.torsion = kernels::torsion(points, closed);

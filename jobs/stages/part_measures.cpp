@@ -19,23 +19,31 @@ struct Stretch {
   PartMeasure measure;
 };
 
-void add_face(const kernels::LevelMesh& mesh, std::int32_t f, PartMeasure& sum) {
+void add_face(const kernels::LevelMesh& mesh, std::int32_t f, double edge_limit, PartMeasure& sum) {
   const kernels::Connectivity& surface = mesh.connectivity;
   const auto& t = surface.triangles[f];
   const std::array<Eigen::Vector3d, 3> p = {mesh.point(t[0]), mesh.point(t[1]), mesh.point(t[2])};
+  bool outlier = false;
   for (int i = 0; i < 3; ++i) {
     const std::int32_t h = kernels::halfedge(f, i);
     sum.boundary_edges += surface.twin[h] == kernels::kNone;
-    if (surface.twin[h] > h) continue;  // counted from the other side
-    sum.edge_length += (p[i == 2 ? 0 : i + 1] - p[i]).norm();
-    sum.edges += 1;
+    const double length = (p[i == 2 ? 0 : i + 1] - p[i]).norm();
+    if (length > edge_limit) {
+      outlier = true;
+    } else if (surface.twin[h] <= h) {  // otherwise counted from the other side
+      sum.edge_length += length;
+      sum.edges += 1;
+    }
   }
   const double twice_area = (p[1] - p[0]).cross(p[2] - p[0]).norm();
   const Eigen::Vector3d corners = p[0] + p[1] + p[2];
   sum.twice_area += twice_area;
   sum.moment += twice_area * corners;
-  sum.corners += corners;
-  sum.squared_corners += p[0].squaredNorm() + p[1].squaredNorm() + p[2].squaredNorm();
+  if (!outlier) {
+    sum.corners += corners;
+    sum.squared_corners += p[0].squaredNorm() + p[1].squaredNorm() + p[2].squaredNorm();
+    sum.corner_count += 3;
+  }
   sum.six_volumes += p[0].dot(p[1].cross(p[2]));
   ++sum.faces;
 }
@@ -49,6 +57,7 @@ PartMeasure& PartMeasure::operator+=(const PartMeasure& other) {
   moment += other.moment;
   corners += other.corners;
   squared_corners += other.squared_corners;
+  corner_count += other.corner_count;
   six_volumes += other.six_volumes;
   boundary_edges += other.boundary_edges;
   faces += other.faces;
@@ -58,7 +67,7 @@ PartMeasure& PartMeasure::operator+=(const PartMeasure& other) {
 PartMeasure PartMeasure::scaled(double factor) const {
   PartMeasure result = *this;
   const Eigen::Vector3d centre = centroid();
-  const double count = 3.0 * static_cast<double>(faces);
+  const double count = corner_count;
   result.edge_length *= factor;
   result.twice_area *= factor * factor;
   result.moment = 3 * result.twice_area * centre;
@@ -78,20 +87,19 @@ Eigen::Vector3d PartMeasure::centroid() const {
 }
 
 double PartMeasure::radius_of_gyration() const {
-  if (faces == 0) return 0;
-  const double count = 3.0 * static_cast<double>(faces);
-  const Eigen::Vector3d mean = corners / count;
-  return std::sqrt(std::max(0.0, squared_corners / count - mean.squaredNorm()));
+  if (corner_count == 0) return 0;
+  const Eigen::Vector3d mean = corners / corner_count;
+  return std::sqrt(std::max(0.0, squared_corners / corner_count - mean.squaredNorm()));
 }
 
 double PartMeasure::volume() const {
   const double volume = six_volumes / 6;
-  const bool encloses =
-      boundary_edges == 0 && volume > kLeastVolume * std::pow(radius_of_gyration(), 3);
+  const bool encloses = boundary_edges == 0 && corner_count == 3.0 * static_cast<double>(faces) &&
+                        volume > kLeastVolume * std::pow(radius_of_gyration(), 3);
   return encloses ? volume : 0;
 }
 
-std::vector<PartMeasure> measure_parts(const kernels::LevelMesh& mesh,
+std::vector<PartMeasure> measure_parts(const kernels::LevelMesh& mesh, double edge_limit,
                                        const engine::RunContext& context) {
   const std::int64_t faces = mesh.connectivity.face_count();
   std::vector<std::vector<Stretch>> blocks((faces + kFaceBlock - 1) / kFaceBlock);
@@ -102,7 +110,7 @@ std::vector<PartMeasure> measure_parts(const kernels::LevelMesh& mesh,
       for (auto f = static_cast<std::int32_t>(b * kFaceBlock); f < end; ++f) {
         const std::int32_t part = mesh.part[mesh.connectivity.triangles[f][0]];
         if (blocks[b].empty() || blocks[b].back().part != part) blocks[b].push_back({part, {}});
-        add_face(mesh, f, blocks[b].back().measure);
+        add_face(mesh, f, edge_limit, blocks[b].back().measure);
       }
     }
   });

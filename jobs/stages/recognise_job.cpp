@@ -1,7 +1,9 @@
 #include "jobs/stages/recognise_job.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "io/dataset/dataset.hpp"
 #include "io/files/error.hpp"
@@ -51,6 +53,11 @@ Recognition recognise(const io::HashLibrary& library, const kernels::Recognition
   return recognise_scene(library, scene, options, context);
 }
 
+/// Tells whether a scene is open. Nothing but its majority says which side of it is outside.
+bool is_open(const kernels::RecognitionModel& scene) {
+  return std::ranges::find(scene.samples.rim, 1) != scene.samples.rim.end();
+}
+
 }  // namespace
 
 RecognitionParameters parameters_of(const io::HashLibrary& library) {
@@ -80,10 +87,16 @@ RecogniseJobResult run_recognise_job(const RecogniseJob& job, const SearchParame
   if (library.digest() != job.library_digest)
     throw io::Error(job.library, "", "the library has changed meanwhile", "run again");
   RecognisedScene scene = {.name = job.name, .input_name = job.input_name, .xxh3 = job.input_xxh3};
-  const kernels::RecognitionModel model = read_scene(job, parameters_of(library), context, scene);
+  kernels::RecognitionModel model = read_scene(job, parameters_of(library), context, scene);
   scene.features = static_cast<std::int64_t>(model.features.features.size());
   scene.samples = static_cast<std::int64_t>(model.samples.points.size());
-  const Recognition recognition = recognise(library, model, parameters, context);
+  Recognition recognition = recognise(library, model, parameters, context);
+  if (recognition.objects.empty() && is_open(model)) {
+    Recognition turned =
+        recognise(library, kernels::turned_over(std::move(model)), parameters, context);
+    scene.turned = !turned.objects.empty();
+    if (scene.turned) recognition = std::move(turned);
+  }
   write_recognised(job.output, job.key, scene, library, parameters, recognition);
   return {.features = scene.features,
           .triplets = recognition.scene_triplets,

@@ -69,7 +69,8 @@ json scene_json(const RecognisedScene& scene) {
                    {"vertices", scene.vertices},
                    {"triangles", scene.triangles},
                    {"features", scene.features},
-                   {"samples", scene.samples}};
+                   {"samples", scene.samples},
+                   {"turned", scene.turned}};
   if (scene.repairs) document["repairs"] = json_of(*scene.repairs);
   return document;
 }

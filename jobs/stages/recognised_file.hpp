@@ -27,6 +27,7 @@ struct RecognisedScene {
   std::int64_t triangles = 0;
   std::int64_t features = 0;
   std::int64_t samples = 0;
+  bool turned = false;  ///< Objects were found only with its triangles facing the other way.
 };
 
 /// The largest number of models in the ranking of the file.

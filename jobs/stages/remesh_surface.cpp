@@ -78,7 +78,7 @@ RemeshResult remesh_surface(kernels::LevelMesh& mesh, std::vector<PartMeasure> p
     }
     result.vanished = result.vanished || remesher.vanished();
     result.counts += remesher.finish();
-    parts = measure_parts(mesh, context);
+    parts = measure_parts(mesh, options.edge_limit, context);
   }
   result.parts = std::move(parts);
   return result;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "engine/run_context.hpp"
@@ -16,7 +17,9 @@ inline constexpr double kShortestSide = 0.1;
 /// The options of remeshing.
 struct RemeshOptions {
   bool curved = true;  ///< New vertices lie on the curved surface; otherwise on the edges.
-  double first_edge_length = 0;                ///< Mean edge length of level 0.
+  double first_edge_length = 0;  ///< Mean edge length of level 0.
+  /// Longer edges are outliers, which do not count in the measures of parts.
+  double edge_limit = std::numeric_limits<double>::infinity();
   std::int64_t faces = 0;                      ///< The mesh is refined until it has so many faces.
   std::span<const std::uint8_t> dropped = {};  ///< (parts) 1 = too small for a patch.
 };

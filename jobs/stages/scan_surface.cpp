@@ -48,12 +48,13 @@ std::string to_json(const kernels::SurfaceRepairs& repairs) {
   return json_of(repairs).dump();
 }
 
-ScanSurface read_surface(const std::filesystem::path& path, const std::string& xxh3) {
+ScanSurface read_surface(const std::filesystem::path& path, const std::string& xxh3,
+                         const kernels::Welding& welding) {
   io::Scan scan = io::read_scan(path);
   if (io::xxh3_of_file(path) != xxh3)
     throw io::Error(path, "", "the file changed while it was read", "run again");
   ScanSurface result;
-  result.built = kernels::build_surface(std::move(scan.mesh));
+  result.built = kernels::build_surface(std::move(scan.mesh), welding);
   check_usable(path, result.built);
   result.format = scan.format;
   result.repairs = {.surface = result.built.repairs,

@@ -75,6 +75,7 @@ std::string to_json(const kernels::SurfaceRepairs& repairs);
 /// Reads and repairs a scan. `xxh3` is the digest that its bytes had when the job was planned.
 /// Throws io::Error if the scan cannot be read, has changed since then, has no usable triangle, or
 /// has lengths that single precision cannot hold.
-ScanSurface read_surface(const std::filesystem::path& scan, const std::string& xxh3);
+ScanSurface read_surface(const std::filesystem::path& scan, const std::string& xxh3,
+                         const kernels::Welding& welding = {});
 
 }  // namespace semigeo::jobs

@@ -19,6 +19,9 @@
 namespace semigeo::jobs {
 namespace {
 
+/// A part with fewer vertices is smaller than a patch of 9 x 9 samples.
+constexpr std::int64_t kSmallPart = 81;
+
 /// Encodes arrays chunk by chunk on all workers.
 class ParallelEncoder {
  public:
@@ -122,8 +125,21 @@ io::LevelAttributes attributes_of(const LevelFields& fields, int iteration) {
           .remeshed = fields.remeshed};
 }
 
+/// Counts the vertices of level 0 whose curvature is not known.
+void count_missing(const LevelFields& fields, const kernels::LevelMesh& mesh,
+                   ScanQuality& quality) {
+  std::vector<std::int64_t> vertices_of(static_cast<std::size_t>(mesh.part_count));
+  for (const std::int32_t part : mesh.part) ++vertices_of[part];
+  for (std::size_t v = 0; v < mesh.part.size(); ++v) {
+    if (fields.patch_completeness[v] > 0) continue;
+    ++quality.without_patch;
+    if (vertices_of[mesh.part[v]] < kSmallPart) ++quality.on_small_parts;
+  }
+}
+
 /// The totals over all levels.
 struct LevelTotals {
+  ScanQuality quality;  ///< What level 0 tells of it.
   kernels::RemeshCounts remeshed;
   std::vector<std::int64_t> feature_counts;  ///< Number of features of each level.
 };
@@ -156,8 +172,9 @@ LevelTotals write_levels(EvolvingSurface& surface, const SurfaceParameters& para
     if (k >= 2) after.push_back(write[k - 2]);
     const auto pass = graph.add(
         "pass " + name, after,
-        [&surface, &parameters, &context, &level] {
+        [&surface, &parameters, &context, &level, &totals, k] {
           level.fields = std::make_unique<LevelFields>(surface.evaluate());
+          if (k == 0) count_missing(*level.fields, surface.mesh(), totals.quality);
           level.features = find_features(surface, *level.fields, parameters.features, context);
         },
         cost);
@@ -226,9 +243,12 @@ SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters&
   Origins origins;
   kernels::Surface surface;
   {
-    ScanSurface scan = read_surface(job.input, job.input_xxh3);
+    ScanSurface scan = read_surface(job.input, job.input_xxh3, welding_of(parameters));
     result.format = scan.format;
     result.repairs = scan.repairs;
+    result.quality.coordinate_step = scan.built.coordinate_step;
+    if (scan.repairs.surface.gap_vertices > 0)
+      result.quality.weld_distance = scan.built.weld_distance;
     header.repairs = json_of(scan.repairs);
     header.origin = {scan.built.origin.x(), scan.built.origin.y(), scan.built.origin.z()};
     PreparedSurface prepared =
@@ -251,6 +271,9 @@ SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters&
   }
   EvolvingSurface evolving(std::move(surface), parameters.evolution, context, std::move(origins));
   LevelTotals totals = write_levels(evolving, parameters, *writer, context);
+  result.quality.mean_edge_length = evolving.first_edge_length();
+  result.quality.without_patch = totals.quality.without_patch;
+  result.quality.on_small_parts = totals.quality.on_small_parts;
   result.remeshed = totals.remeshed;
   result.vanished = evolving.vanished();
   writer->write_selection(

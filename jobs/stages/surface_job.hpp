@@ -23,6 +23,17 @@ struct SurfaceJob {
   std::string key;         ///< Hash of everything the dataset depends on.
 };
 
+/// Says why curvatures of level 0 may be missing or noise. All lengths are in the scan's unit.
+struct ScanQuality {
+  double mean_edge_length = 0;      ///< Without outliers; see `kernels::edge_lengths`.
+  double coordinate_step = 0;       ///< Step of the coordinates' precision.
+  double weld_distance = 0;         ///< Width of the widest gap that may have been closed.
+  std::int64_t without_patch = 0;   ///< Vertices of level 0 without a valid patch.
+  std::int64_t on_small_parts = 0;  ///< Those of them on parts that are smaller than a patch.
+
+  bool operator==(const ScanQuality&) const = default;
+};
+
 /// Describes the output of a surface job.
 struct SurfaceJobResult {
   std::string format;  ///< File format of the scan.
@@ -31,6 +42,7 @@ struct SurfaceJobResult {
   std::int32_t parts = 0;
   std::int64_t levels = 0;
   ScanRepairs repairs;
+  ScanQuality quality;
   PreparationResult preparation;
   kernels::RemeshCounts remeshed;  ///< Sum over all levels.
   bool vanished = false;           ///< The last level is only a triangle or a tetrahedron.

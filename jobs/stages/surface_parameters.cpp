@@ -1,5 +1,7 @@
 #include "jobs/stages/surface_parameters.hpp"
 
+#include <charconv>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -24,11 +26,32 @@ std::string unit_problem(const std::string& unit) {
   return plain ? std::string() : kRemedy;
 }
 
+/// Returns the length that a text is, or nothing.
+std::optional<double> length_in(const std::string& text) {
+  double length = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, length);
+  if (error != std::errc() || rest != end || !std::isfinite(length) || length <= 0) return {};
+  return length;
+}
+
+/// Returns what is wrong with a choice of gaps, or an empty string.
+std::string weld_problem(const std::string& weld) {
+  if (weld == "auto" || weld == "exact" || length_in(weld)) return {};
+  return "give auto, exact or a positive length in the scan's unit";
+}
+
 /// Returns the rows for what is done to a scan before it is smoothed.
 Table preparation_rows() {
   using Options = PreparationOptions;
   constexpr auto kGroup = &Surface::preparation;
   return {
+      {.key = "weld",
+       .name = "weld",
+       .help =
+           "Close gaps between triangles whose corners differ. auto: by what the numbers of the\n"
+           "file are rounded to; exact: none; LENGTH: by at most so much, in the scan's unit",
+       .value = Text<Surface>{field<&Surface::weld>(), weld_problem}},
       {.key = "fill_holes",
        .name = "fill-holes",
        .help = "Fill holes of at most so many edges; outer boundaries stay. 0: none",
@@ -143,6 +166,11 @@ const ParameterTable<SurfaceParameters>& surface_parameter_table() {
   static const Table table =
       joined({preparation_rows(), evolution_rows(), feature_rows(), storage_rows()});
   return table;
+}
+
+kernels::Welding welding_of(const SurfaceParameters& parameters) {
+  if (parameters.weld == "exact") return {.distance = 0};
+  return {.distance = length_in(parameters.weld)};
 }
 
 nlohmann::json json_of(const SurfaceParameters& parameters) {

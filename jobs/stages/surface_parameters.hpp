@@ -9,12 +9,14 @@
 #include "jobs/stages/level_features.hpp"
 #include "jobs/stages/parameter.hpp"
 #include "jobs/stages/prepare_surface.hpp"
+#include "kernels/repair/surface_builder.hpp"
 
 namespace semigeo::jobs {
 
 /// Holds all parameters of a dataset: everything that its content depends on besides the scan.
 struct SurfaceParameters {
-  int levels = 8;  ///< Number of smoothing iterations; the dataset has one more level.
+  int levels = 8;             ///< Number of smoothing iterations; the dataset has one more level.
+  std::string weld = "auto";  ///< Which gaps are closed: "auto", "exact" or a length.
   PreparationOptions preparation = {};
   EvolutionOptions evolution = {};
   FeatureOptions features = {};
@@ -27,6 +29,9 @@ struct SurfaceParameters {
 /// Returns what each of the parameters is called and which values it may have, in the order of the
 /// help text. A parameter is declared there and nowhere else.
 const ParameterTable<SurfaceParameters>& surface_parameter_table();
+
+/// Returns what `weld` says. A text that is none of its values is "auto".
+kernels::Welding welding_of(const SurfaceParameters& parameters);
 
 /// Returns the parameters as JSON with sorted keys.
 nlohmann::json json_of(const SurfaceParameters& parameters);

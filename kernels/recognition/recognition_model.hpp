@@ -29,4 +29,8 @@ struct RecognitionModel {
   SurfaceSamples samples;
 };
 
+/// Returns the same object with its triangles facing the other way: normals and mean curvatures
+/// change their sign, Gaussian curvature and torsion do not.
+RecognitionModel turned_over(RecognitionModel model);
+
 }  // namespace semigeo::kernels

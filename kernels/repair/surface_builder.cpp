@@ -17,6 +17,8 @@ namespace {
 
 /// The distance of two roundings of one number, in steps, with room for the diagonal.
 constexpr double kRoundedTwice = 2;
+/// The mean length of boundary edges, in gaps, from which a gap may be rounding.
+constexpr double kLeastEdge = 100;
 
 /// Returns which points are corners of a face.
 std::vector<bool> used_points(const TriangleMesh& mesh) {
@@ -41,12 +43,26 @@ Eigen::Vector3d choose_origin(const std::vector<Eigen::Vector3d>& points,
   return (middle / unit).array().round() * unit;
 }
 
-/// Returns the longest step between neighbouring numbers of single precision at used points.
-double coordinate_step(const std::vector<Eigen::Vector3f>& points, const std::vector<bool>& used) {
-  float largest = 0;
+/// Returns the step between neighbouring numbers of single precision at used points: as they lie in
+/// memory, or, if the numbers of the file are all of single precision, as they are there. Nine in
+/// ten points have no longer steps. `stored` are `points` relative to the origin.
+double step_of(const std::vector<Eigen::Vector3d>& points,
+               const std::vector<Eigen::Vector3f>& stored, const std::vector<bool>& used) {
+  bool single = true;
   for (std::size_t v = 0; v < points.size(); ++v)
-    if (used[v]) largest = std::max(largest, points[v].cwiseAbs().maxCoeff());
-  return std::nextafter(largest, HUGE_VALF) - largest;
+    for (const double x : points[v])
+      single = single && (!used[v] || static_cast<double>(static_cast<float>(x)) == x);
+  std::vector<float> largest;
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    if (!used[v]) continue;
+    const float in_memory = stored[v].cwiseAbs().maxCoeff();
+    const auto in_file = static_cast<float>(points[v].cwiseAbs().maxCoeff());
+    largest.push_back(single ? std::max(in_memory, in_file) : in_memory);
+  }
+  if (largest.empty()) return 0;
+  const auto high = largest.begin() + std::ssize(largest) * 9 / 10;
+  std::nth_element(largest.begin(), high, largest.end());
+  return std::nextafter(*high, HUGE_VALF) - *high;
 }
 
 /// Tells whether there is nothing to repair. No edge has more than two faces; the two faces of an
@@ -162,18 +178,19 @@ void pair_and_split(Faces faces, Surface& surface, SurfaceRepairs& repairs) {
 
 }  // namespace
 
-BuiltSurface build_surface(TriangleMesh&& mesh) {
+BuiltSurface build_surface(TriangleMesh&& mesh, const Welding& welding) {
   BuiltSurface built;
   Surface& surface = built.surface;
   SurfaceRepairs& repairs = built.repairs;
-  double gap = 0;
   {
     const std::vector<bool> used = used_points(mesh);
     built.origin = choose_origin(mesh.points, used);
     surface.points.reserve(mesh.points.size());
     for (const auto& p : mesh.points) surface.points.push_back((p - built.origin).cast<float>());
-    built.coordinate_step = coordinate_step(surface.points, used);
-    gap = kRoundedTwice * rounding_of(mesh.points, built.coordinate_step);
+    built.coordinate_step = step_of(mesh.points, surface.points, used);
+    built.weld_distance =
+        welding.distance ? *welding.distance
+                         : kRoundedTwice * rounding_of(mesh.points, used, built.coordinate_step);
   }
   std::vector<Eigen::Vector3d>().swap(mesh.points);
 
@@ -189,7 +206,8 @@ BuiltSurface build_surface(TriangleMesh&& mesh) {
   repairs.degenerate_faces = drop_degenerate(faces);
   const std::int64_t vertex_count = std::ssize(surface.points);
   EdgeGroups groups = group_edges(faces.places, vertex_count);
-  repairs.gap_vertices = close_gaps(faces.places, groups, surface.points, gap);
+  repairs.gap_vertices = close_gaps(faces.places, groups, surface.points, built.weld_distance,
+                                    welding.distance ? 0 : kLeastEdge);
   if (repairs.gap_vertices > 0) {
     repairs.degenerate_faces += drop_degenerate(faces);
     groups = group_edges(faces.places, vertex_count);

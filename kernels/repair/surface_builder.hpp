@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 
 #include "kernels/surface/surface.hpp"
 #include "kernels/surface/triangle_mesh.hpp"
@@ -24,19 +25,26 @@ struct SurfaceRepairs {
   bool operator==(const SurfaceRepairs&) const = default;
 };
 
+/// Says which gaps between triangles are closed. Equal points are welded in any case.
+struct Welding {
+  /// The two sides of a gap may be so far apart, in the scan's length unit. If it is not given, it
+  /// is what the numbers of the file are rounded to (see `rounding_of`); 0: gaps stay.
+  std::optional<double> distance = {};
+};
+
 /// Holds a surface and what was done to make it one.
 struct BuiltSurface {
   Surface surface;                                   ///< Its points are relative to `origin`.
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< In the scan's length unit.
-  double coordinate_step = 0;  ///< Longest step between neighbouring numbers at the points.
+  double coordinate_step = 0;  ///< Step of the points' precision, in file or memory.
+  double weld_distance = 0;    ///< The two sides of gaps that were closed are no farther apart.
   SurfaceRepairs repairs;
 };
 
 /// Makes a manifold surface of any triangle list.
 /// - A scan that lies farther from its coordinate origin than it is large is moved, so that single
 ///   precision keeps its detail. Vertices that no face uses do not count.
-/// - Identical points are welded, and gaps that are not wider than the numbers of the file are
-///   precise are closed.
+/// - Identical points are welded, and gaps that `welding` allows are closed.
 /// - Only degenerate and duplicate faces are dropped. Where more than two faces meet in an edge, or
 ///   fans touch in a vertex, surfaces are cut apart (see `pair_edges`). Solids that touch in a face
 ///   keep it both.
@@ -45,6 +53,6 @@ struct BuiltSurface {
 /// Vertices and faces keep their order; copies of split vertices come last. The mesh is consumed,
 /// to save memory. Indices must be valid and points finite. A result without faces is no error. The
 /// cost is linear in memory and, nearly, in time.
-BuiltSurface build_surface(TriangleMesh&& mesh);
+BuiltSurface build_surface(TriangleMesh&& mesh, const Welding& welding = {});
 
 }  // namespace semigeo::kernels

@@ -12,8 +12,6 @@
 namespace semigeo::kernels {
 namespace {
 
-/// The mean length of boundary edges, in gaps, from which a gap counts as rounding.
-constexpr double kLeastEdge = 100;
 /// The cosine between two faces from which they lie on the same side of a gap.
 constexpr double kSameSide = 0.5;
 
@@ -117,36 +115,29 @@ std::vector<std::int32_t> weld_equal(std::vector<Eigen::Vector3f>& points) {
   return new_index;
 }
 
-double rounding_of(std::span<const Eigen::Vector3d> points, double stored_step) {
+double rounding_of(std::span<const Eigen::Vector3d> points, const std::vector<bool>& used,
+                   double step) {
   constexpr std::size_t kSample = 4096;
   constexpr int kMostDecimals = 9;
   const std::size_t stride = std::max<std::size_t>(1, points.size() / kSample);
-  const auto all = [&](const auto& holds) {
+  const auto shown_with = [&](double per_unit) {
     for (std::size_t i = 0; i < points.size(); i += stride)
-      for (int c = 0; c < 3; ++c)
-        if (!holds(points[i][c])) return false;
+      for (int c = 0; c < 3; ++c) {
+        const double scaled = points[i][c] * per_unit;
+        if (used[i] && std::abs(scaled - std::round(scaled)) > 1e-12 * std::abs(scaled) + 1e-9)
+          return false;
+      }
     return true;
   };
-  double step = 1;
-  for (int decimals = 0; decimals <= kMostDecimals; ++decimals, step /= 10) {
-    const double per_unit = std::pow(10.0, decimals);
-    const bool shown = all([&](double x) {
-      const double scaled = x * per_unit;
-      return std::abs(scaled - std::round(scaled)) <= 1e-12 * std::abs(scaled) + 1e-9;
-    });
-    if (shown) return std::max(step, stored_step);
-  }
-  double largest = 0;
-  const bool single = all([&](double x) {
-    largest = std::max(largest, std::abs(x));
-    return static_cast<double>(static_cast<float>(x)) == x;
-  });
-  constexpr double kSinglePrecision = 0x1p-23;
-  return single ? std::max(largest * kSinglePrecision, stored_step) : stored_step;
+  double decimal = 1;
+  for (int decimals = 0; decimals <= kMostDecimals; ++decimals, decimal /= 10)
+    if (shown_with(std::pow(10.0, decimals))) return std::max(decimal, step);
+  return step;
 }
 
 std::int64_t close_gaps(std::vector<Triangle>& triangles, const EdgeGroups& groups,
-                        std::span<const Eigen::Vector3f> points, double distance) {
+                        std::span<const Eigen::Vector3f> points, double distance,
+                        double least_edge) {
   const std::vector<OpenEdge> open = open_edges(triangles, groups);
   if (open.empty() || !(distance > 0)) return 0;
   const auto apart = [&](std::int32_t a, std::int32_t b) {
@@ -154,7 +145,7 @@ std::int64_t close_gaps(std::vector<Triangle>& triangles, const EdgeGroups& grou
   };
   double length = 0;
   for (const OpenEdge& e : open) length += apart(e.from, e.to);
-  if (length < kLeastEdge * distance * static_cast<double>(open.size())) return 0;
+  if (length < least_edge * distance * static_cast<double>(open.size())) return 0;
   const auto inwards = [&](std::size_t e) {
     return Eigen::Vector3d(
         (points[open[e].apex] - points[open[e].from]).cast<double>().stableNormalized() +

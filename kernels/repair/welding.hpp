@@ -15,18 +15,19 @@ namespace semigeo::kernels {
 std::vector<std::int32_t> weld_equal(std::vector<Eigen::Vector3f>& points);
 
 /// Returns the distance, in the units of the points, by which equal points of a file may differ
-/// because its numbers are rounded: one step of the last decimal that they show, or of single
-/// precision, whichever is longer. `stored_step` is the step of the stored points. A file of double
-/// precision, whose numbers show no rounding, has `stored_step`.
-double rounding_of(std::span<const Eigen::Vector3d> points, double stored_step);
+/// because its numbers are rounded: one step of the last decimal that they show, or `step`, that of
+/// their precision, whichever is longer. Only points that are `used` count.
+double rounding_of(std::span<const Eigen::Vector3d> points, const std::vector<bool>& used,
+                   double step);
 
 /// Closes gaps whose two sides lie within `distance` of each other: the vertices of a boundary edge
 /// are merged into those of another boundary edge that runs the other way. A vertex that is on no
 /// boundary, and an edge that has no such partner, stay as they are, so that nothing is joined
-/// across a thin wall. Nothing is merged if the boundary's edges are not a hundred times as long,
-/// in the mean. Renames the vertices of `triangles`, whose edges are `groups`, and returns the
-/// number of merged ones. The cost is linear.
+/// across a thin wall. Nothing is merged if the boundary's edges are not `least_edge` times as
+/// long, in the mean. Renames the vertices of `triangles`, whose edges are `groups`, and returns
+/// the number of merged ones. The cost is linear.
 std::int64_t close_gaps(std::vector<Triangle>& triangles, const EdgeGroups& groups,
-                        std::span<const Eigen::Vector3f> points, double distance);
+                        std::span<const Eigen::Vector3f> points, double distance,
+                        double least_edge);
 
 }  // namespace semigeo::kernels

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "kernels/surface/connectivity.hpp"
@@ -20,8 +21,22 @@ struct Surface : Connectivity {
 /// The cost is linear.
 void connect(Surface& surface);
 
-/// Returns the mean length of all edges, each counted once, in the units of the points; 0 without
-/// faces.
-double mean_edge_length(const Surface& surface);
+/// Says how long the edges of a surface are, in the units of its points.
+struct EdgeLengths {
+  double mean = 0;  ///< Mean length of all edges but outliers, each counted once; 0 without faces.
+  /// Longer edges are outliers; infinity if there are none.
+  double limit = std::numeric_limits<double>::infinity();
+};
+
+/// Returns the mean length of the edges. Edges longer than 20 times the median are outliers and do
+/// not count, unless they are more than a tenth of all edges: then they are how this mesh is made.
+/// A vertex far out, pixels of a range image without depth, or a few huge faces therefore do not
+/// change the result; without outliers it is the plain mean. The cost is linear.
+EdgeLengths edge_lengths(const Surface& surface);
+
+/// Returns the mean of `edge_lengths`.
+inline double mean_edge_length(const Surface& surface) {
+  return edge_lengths(surface).mean;
+}
 
 }  // namespace semigeo::kernels

@@ -34,14 +34,18 @@ void visit_each(const Visit& visit, Fields&... fields) {
 
 template <typename Result, typename Visit>
 void every_field_of_result(Result& result, const Visit& visit) {
-  auto& [format, vertices, triangles, parts, levels, repairs, preparation, remeshed, vanished] =
-      result;
+  auto& [format, vertices, triangles, parts, levels, repairs, quality, preparation, remeshed,
+         vanished] = result;
   visit_each(visit, format, vertices, triangles, parts, levels, vanished);
   {
     auto& [surface, a, b, c, d, e, f, g] = repairs;
     visit_each(visit, a, b, c, d, e, f, g);
     auto& [h, i, j, k, l, m, n, o, p] = surface;
     visit_each(visit, h, i, j, k, l, m, n, o, p);
+  }
+  {
+    auto& [a, b, c, d, e] = quality;
+    visit_each(visit, a, b, c, d, e);
   }
   {
     auto& [holes, a, b, c, d, tolerance, distance] = preparation;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "kernels/repair/surface_builder.hpp"
@@ -31,10 +32,11 @@ kernels::LevelMesh level_mesh(const TriangleMesh& mesh) {
   return result;
 }
 
-std::vector<PartMeasure> measured(const TriangleMesh& mesh, int threads = 2) {
+std::vector<PartMeasure> measured(const TriangleMesh& mesh, int threads = 2,
+                                  double edge_limit = std::numeric_limits<double>::infinity()) {
   engine::Workers workers(threads);
   engine::Observer observer;
-  return measure_parts(level_mesh(mesh), {workers, observer, {}});
+  return measure_parts(level_mesh(mesh), edge_limit, {workers, observer, {}});
 }
 
 TriangleMesh moved(TriangleMesh mesh, double factor, const Vector3d& shift) {
@@ -70,6 +72,18 @@ TEST(PartMeasuresTest, NoiseAddsToAreaAndEdgesButNotToSize) {
   EXPECT_GT(rough.mean_edge_length(), 1.05 * smooth.mean_edge_length());
   EXPECT_NEAR(rough.radius_of_gyration() / smooth.radius_of_gyration(), 1, 5e-4);
   EXPECT_NEAR(std::cbrt(rough.volume() / smooth.volume()), 1, 5e-4);
+}
+
+TEST(PartMeasuresTest, OutliersChangeNeitherEdgesNorRadius) {
+  const PartMeasure sphere = measured(shapes::icosphere(5)).at(0);
+  TriangleMesh mesh = shapes::icosphere(5);
+  mesh.points[1000] *= 1e4;
+  EXPECT_GT(measured(mesh).at(0).radius_of_gyration(), 90);
+  const PartMeasure spiked = measured(mesh, 2, 1).at(0);
+  EXPECT_EQ(spiked.edges, sphere.edges - 6);
+  EXPECT_NEAR(spiked.mean_edge_length() / sphere.mean_edge_length(), 1, 1e-4);
+  EXPECT_NEAR(spiked.radius_of_gyration(), 1, 1e-4);
+  EXPECT_EQ(spiked.volume(), 0);
 }
 
 TEST(PartMeasuresTest, ScaledIsWhatTheScaledPartMeasures) {

@@ -126,6 +126,25 @@ TEST_F(RecogniseJobTest, ADatasetIsAScene) {
   EXPECT_EQ(read_recognised(job_.output)["scene"]["format"], "dataset");
 }
 
+// An open scene does not say which of its sides is outside. Both are tried.
+TEST_F(RecogniseJobTest, AnOpenSceneThatFacesTheOtherWayIsRecognised) {
+  kernels::TriangleMesh part = shapes::torus(1, 0.4, 60, 24, 0.3);
+  shapes::add_noise(part, 0.02, 1);
+  std::erase_if(part.triangles, [&](const auto& t) { return part.points[t[0]].x() < -0.5; });
+  for (const bool turned : {false, true}) {
+    if (turned)
+      for (auto& t : part.triangles) std::swap(t[1], t[2]);
+    tests::write_obj(job_.scene, part);
+    job_.input_xxh3 = io::xxh3_of_file(job_.scene);
+    ASSERT_EQ(run_recognise_job(job_, {}, context_).objects, 1) << turned;
+    const nlohmann::json document = read_recognised(job_.output);
+    EXPECT_EQ(document["scene"]["turned"], turned);
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j)
+        EXPECT_NEAR(document["objects"][0]["pose"]["matrix"][i][j].get<double>(), i == j, 0.02);
+  }
+}
+
 TEST_F(RecogniseJobTest, WhatHasChangedMeanwhileIsRefused) {
   const std::string xxh3 = job_.input_xxh3;
   job_.input_xxh3 = "another";

@@ -283,6 +283,59 @@ TEST_F(SurfaceJobTest, WhatTheReaderToleratesIsCountedInTheDataset) {
   EXPECT_EQ(repairs.at("unknown_header_lines"), 1);
 }
 
+TEST_F(SurfaceJobTest, CoarseCoordinatesAreMeasured) {
+  const ScanQuality fine = run(job_for(scan(shapes::icosphere(3))), {.levels = 0}).quality;
+  EXPECT_NEAR(fine.mean_edge_length, 0.15, 0.02);
+  EXPECT_LT(fine.coordinate_step, 1e-6);
+  EXPECT_EQ(fine.without_patch, 0);
+  // A sphere in a national grid, in single precision: its steps are half a unit. The numbers lie in
+  // memory between, because GCC 12 leaves out the rounding of a pair of conversions.
+  kernels::TriangleMesh far = shapes::icosphere(3, 40);
+  std::vector<Eigen::Vector3f> single;
+  for (const auto& p : far.points)
+    single.emplace_back((p + Eigen::Vector3d(5e5, 5.4e6, 300)).cast<float>());
+  for (std::size_t v = 0; v < single.size(); ++v) far.points[v] = single[v].cast<double>();
+  EXPECT_EQ(run(job_for(scan(far)), {.levels = 0}).quality.coordinate_step, 0.5);
+  // The same in double precision.
+  far = shapes::icosphere(3, 40);
+  for (auto& p : far.points) p += Eigen::Vector3d(5e5, 5.4e6, 300);
+  EXPECT_LT(run(job_for(scan(far)), {.levels = 0}).quality.coordinate_step, 1e-4);
+}
+
+// Triangles that share nothing are parts of three vertices, on which no patch fits.
+TEST_F(SurfaceJobTest, VerticesWithoutCurvatureAreCounted) {
+  kernels::TriangleMesh loose;
+  const kernels::TriangleMesh sphere = shapes::icosphere(3);
+  for (const auto& t : sphere.triangles) {
+    const auto n = static_cast<std::int32_t>(loose.points.size());
+    const Eigen::Vector3d away = 0.02 * sphere.points[t[0]];
+    for (const std::int32_t v : t) loose.points.emplace_back(sphere.points[v] + away);
+    loose.triangles.push_back({n, n + 1, n + 2});
+  }
+  const ScanQuality quality = run(job_for(scan(loose)), {.levels = 0}).quality;
+  EXPECT_GT(quality.without_patch, 2000);
+  EXPECT_EQ(quality.on_small_parts, quality.without_patch);
+}
+
+TEST_F(SurfaceJobTest, GapsAreClosedAsTheParametersSay) {
+  // Corners that differ by up to 0.004.
+  kernels::TriangleMesh soup;
+  const kernels::TriangleMesh sphere = shapes::icosphere(3);
+  for (const auto& t : sphere.triangles) {
+    const auto n = static_cast<std::int32_t>(soup.points.size());
+    for (const std::int32_t v : t)
+      soup.points.emplace_back(sphere.points[v] * (1 + 0.001 * (n / 3 % 3)));
+    soup.triangles.push_back({n, n + 1, n + 2});
+  }
+  const fs::path input = scan(soup);
+  EXPECT_GT(run(job_for(input), {.levels = 0}).parts, 100);
+  EXPECT_GT(run(job_for(input), {.levels = 0, .weld = "exact"}).parts, 100);
+  const SurfaceJobResult welded = run(job_for(input), {.levels = 0, .weld = "0.01"});
+  EXPECT_EQ(welded.parts, 1);
+  EXPECT_EQ(welded.vertices, 642);
+  EXPECT_EQ(welded.quality.weld_distance, 0.01);
+}
+
 TEST_F(SurfaceJobTest, AScanWithoutUsableTrianglesIsRefused) {
   std::ofstream(folder_ / "flat.obj") << "v 0 0 0\nv 1 0 0\nv 0 0 0\nf 1 2 1\nf 1 2 3\n";
   const io::Error error = refusal(job_for(folder_ / "flat.obj"));

@@ -19,14 +19,14 @@ TEST(SurfaceParametersTest, AreJsonWithSortedKeys) {
       R"({"compression":"deflate","coordinates":"semigeodesic","decimate":"0.0 edges",)"
       R"("feature_completeness":0.6,"feature_radius":1.5,"fill_holes":0,)"
       R"("length_unit":"unknown","level":"slope","levels":8,"principal":false,)"
-      R"("remesh":true,"rescale":"size","schedule":"uniform","step":1.0,"surface":"curved","target_vertices":0})");
+      R"("remesh":true,"rescale":"size","schedule":"uniform","step":1.0,"surface":"curved","target_vertices":0,"weld":"auto"})");
   const SurfaceParameters other = unusual_parameters();
   EXPECT_EQ(
       to_json(other),
       R"({"compression":"none","coordinates":"polar","decimate":"0.25 length units",)"
       R"("feature_completeness":0.75,"feature_radius":0.0,"fill_holes":40,)"
       R"("length_unit":"m\"m","level":2,"levels":3,"principal":true,)"
-      R"("remesh":false,"rescale":"edges","schedule":"octaves","step":0.1,"surface":"flat","target_vertices":1993})");
+      R"("remesh":false,"rescale":"edges","schedule":"octaves","step":0.1,"surface":"flat","target_vertices":1993,"weld":"0.5"})");
   for (const SurfaceParameters& parameters : {SurfaceParameters{}, other})
     EXPECT_EQ(to_json(surface_parameters_from_json(json_of(parameters))), to_json(parameters));
   for (const std::string text : {"{}", "[]", R"({"levels":8})"})
@@ -37,9 +37,10 @@ TEST(SurfaceParametersTest, AreJsonWithSortedKeys) {
 TEST(SurfaceParametersTest, EachOfThemShows) {
   const SurfaceParameters plain;
   std::set<std::string> texts = {to_json(plain)};
-  for (const int field : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}) {
+  for (const int field : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13}) {
     SurfaceParameters changed;
     if (field == 0) changed.levels = 9;
+    if (field == 13) changed.weld = "exact";
     if (field == 1) changed.evolution.curved = false;
     if (field == 2) changed.evolution.step_factor = std::nextafter(1.0, 2.0);
     if (field == 3) changed.compression = io::Compression::kNone;

@@ -37,6 +37,38 @@ void expect_same_as_open_mesh(const TriangleMesh& mesh) {
   }
 }
 
+TEST(SurfaceTest, OutliersDoNotCountAsEdges) {
+  const TriangleMesh sphere = shapes::icosphere(5);
+  const EdgeLengths plain = edge_lengths(build_surface(TriangleMesh(sphere)).surface);
+  EXPECT_EQ(plain.limit, std::numeric_limits<double>::infinity());
+  // One vertex far out; pixels without depth, one in a hundred; a few faces across everything.
+  TriangleMesh far = sphere;
+  far.points[77] *= 1e5;
+  TriangleMesh pixels = sphere;
+  for (std::size_t v = 50; v < pixels.points.size(); v += 100) pixels.points[v].setZero();
+  TriangleMesh plate = sphere;
+  const auto n = static_cast<std::int32_t>(plate.points.size());
+  for (const auto& p : {Eigen::Vector3d(-50, -50, -2), Eigen::Vector3d(50, -50, -2),
+                        Eigen::Vector3d(50, 50, -2), Eigen::Vector3d(-50, 50, -2)})
+    plate.points.push_back(p);
+  plate.triangles.push_back({n, n + 1, n + 2});
+  plate.triangles.push_back({n, n + 2, n + 3});
+  for (const TriangleMesh& mesh : {far, pixels, plate}) {
+    const EdgeLengths lengths = edge_lengths(build_surface(TriangleMesh(mesh)).surface);
+    EXPECT_NEAR(lengths.mean / plain.mean, 1, 1e-3);
+    EXPECT_LT(lengths.limit, 21 * plain.mean);
+  }
+}
+
+// Where long edges are more than a few, they are no outliers: every cell of a tall prism has some.
+TEST(SurfaceTest, LongEdgesOfATallPrismAreItsOwn) {
+  TriangleMesh prism = shapes::cylinder(1, 2, 60, 2);
+  for (auto& p : prism.points) p.z() *= 100;
+  const EdgeLengths lengths = edge_lengths(build_surface(std::move(prism)).surface);
+  EXPECT_EQ(lengths.limit, std::numeric_limits<double>::infinity());
+  EXPECT_GT(lengths.mean, 10);
+}
+
 TEST(SurfaceTest, ConnectivityIsThatOfOpenMesh) {
   expect_same_as_open_mesh(shapes::icosphere(3));
   expect_same_as_open_mesh(shapes::plane(1, 7));
