@@ -32,7 +32,7 @@ class SphereDatasetTest(SemigeoTest):
         self.assertEqual(json.loads(attributes["parameters"]),
                          {"compression": "deflate", "coordinates": "semigeodesic",
                           "decimate": "0.0 edges", "feature_completeness": 0.6,
-                          "feature_radius": 1.5, "fill_holes": 0, "target_vertices": 0,
+                          "feature_radius": 1.5, "fill_holes": 0, "target_vertices": 0, "weld": "auto",
                           "length_unit": "mm", "level": "slope", "levels": LEVELS,
                           "principal": False, "remesh": True, "rescale": "size",
                           "schedule": "uniform", "step": 1.0, "surface": "curved"})
