@@ -14,7 +14,7 @@
 
 #include "engine/descriptor.hpp"
 #include "io/files/chunk_codec.hpp"
-#include "io/files/error.hpp"
+#include "io/files/write_error.hpp"
 
 namespace semigeo::io {
 namespace {
@@ -27,8 +27,9 @@ std::filesystem::path folder_of(const std::filesystem::path& path) {
 }
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& action, int error) {
-  throw Error(path, "", action + ": " + std::generic_category().message(error),
-              error == ENOSPC ? "free some space and run again" : "check the folder and its disk");
+  throw WriteError(
+      error, path, "", action + ": " + std::generic_category().message(error),
+      error == ENOSPC ? "free some space and run again" : "check the folder and its disk");
 }
 
 // Returns a name that is not too long for the file system, however long the final one is.

@@ -4,7 +4,7 @@
 #include <string>
 #include <system_error>
 
-#include "io/files/error.hpp"
+#include "io/files/write_error.hpp"
 
 namespace semigeo::io {
 namespace {
@@ -47,8 +47,10 @@ void OutputFile::flush() {
 }
 
 void OutputFile::fail(const char* problem) const {
-  throw Error(path(), "", std::string(problem) + ": " + std::generic_category().message(errno),
-              "check the folder, its permissions and the free space");
+  const int code = errno;
+  throw WriteError(code, path(), "",
+                   std::string(problem) + ": " + std::generic_category().message(code),
+                   "check the folder, its permissions and the free space");
 }
 
 }  // namespace semigeo::io

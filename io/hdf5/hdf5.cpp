@@ -1,12 +1,15 @@
 #include "io/hdf5/hdf5.hpp"
 
 #include <algorithm>
+#include <cerrno>
+#include <charconv>
 #include <new>
 #include <optional>
 #include <string_view>
 #include <utility>
 
 #include "io/files/error.hpp"
+#include "io/files/write_error.hpp"
 #include "io/hdf5/hdf5_library.hpp"
 
 namespace semigeo::io {
@@ -16,6 +19,12 @@ constexpr const char* kDamaged =
     "the file is damaged or not one of semigeo's: remove it and run again, or run with --verify";
 
 constexpr unsigned kMostInHeader = 48;
+
+/// The cause of an error: HDF5's words or the system's, and the system's errno or 0.
+struct InnermostReason {
+  std::string text;
+  int code = 0;
+};
 
 /// Holds HDF5's description of an error. It is empty if there was no memory for it.
 using Reason = std::optional<std::string>;
@@ -70,28 +79,36 @@ void prepare_library() {
 }
 
 // Returns HDF5's innermost reason. From a report about a system call it takes only the words of the
-// system.
-std::string innermost_reason() {
+// system and the number of its error, which HDF5 has nowhere else.
+static InnermostReason reason_and_code() {
   Reason reason = "";
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &reason);
   if (!reason) throw std::bad_alloc();  // no exception may pass through a C library
   std::string text = std::move(*reason);
+  int code = 0;
+  constexpr std::string_view kNumber = "errno = ";
+  if (const std::size_t number = text.find(kNumber); number != std::string::npos)
+    std::from_chars(text.data() + number + kNumber.size(), text.data() + text.size(), code);
   constexpr std::string_view kMark = "error message = '";
   const std::size_t mark = text.find(kMark);
   if (mark != std::string::npos) {
     const std::size_t begin = mark + kMark.size();
     text = text.substr(begin, text.find('\'', begin) - begin);
   }
-  return text.empty() ? "HDF5 gives no reason" : text;
+  return {text.empty() ? "HDF5 gives no reason" : text, code};
+}
+
+std::string innermost_reason() {
+  return reason_and_code().text;
 }
 
 void Hdf5File::fail(const std::string& place, const std::string& action) const {
-  const std::string reason = innermost_reason();
-  const bool full = reason.find("No space left") != std::string::npos;
-  throw Error(shown_as_, place, "cannot " + action + ": " + reason,
-              full       ? "free some space and run again"
-              : writing_ ? "check the disk and the memory, and run again"
-                         : kDamaged);
+  const auto [reason, code] = reason_and_code();
+  const std::string problem = "cannot " + action + ": " + reason;
+  if (!writing_) throw Error(shown_as_, place, problem, kDamaged);
+  throw WriteError(code, shown_as_, place, problem,
+                   code == ENOSPC ? "free some space and run again"
+                                  : "check the disk and the memory, and run again");
 }
 
 void Hdf5File::refuse(const std::string& place, const std::string& problem) const {

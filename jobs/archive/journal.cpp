@@ -55,6 +55,7 @@ void for_each_field(JobEnded& event, const Visit& visit) {
   visit("state", event.state);
   visit("error", event.error);
   visit("format", event.format);
+  visit("notes", event.notes);
   visit("seconds", event.seconds);
   visit("cpu_seconds", event.cpu_seconds);
   visit("peak_bytes", event.peak_bytes);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <variant>
 
@@ -36,6 +37,8 @@ struct JobEnded {
   std::string state = {};  ///< "done", "failed", "skipped" or "up to date".
   std::string error = {};  ///< Why the job failed or was skipped, as one sentence.
   std::string format = {};
+  /// What was repaired or lost, under the heading of its line: "repaired", "3 welded vertices".
+  std::map<std::string, std::string> notes = {};
   double seconds = 0;
   double cpu_seconds = 0;
   double peak_bytes = 0;  ///< Largest use of memory.

@@ -56,6 +56,7 @@ class Reader {
     if (job.state == "skipped") ++status_.skipped;
     if (job.state != "done") return;
     ++status_.done;
+    if (!job.notes.empty()) status_.notes[job.job] = job.notes;
     ++status_.done_by_kind[job.job.substr(0, job.job.find(' '))];
     status_.vertex_levels += static_cast<double>(job.vertices) * static_cast<double>(job.levels);
   }

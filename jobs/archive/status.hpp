@@ -24,10 +24,12 @@ struct ArchiveStatus {
   std::int64_t skipped = 0;                   ///< Jobs that need the result of a failed one.
   std::map<std::string, double> running;      ///< Seconds since the start, by name of the job.
   std::map<std::string, std::string> failed;  ///< Reason, by name of the job.
-  double seconds = 0;                         ///< Time from the start to the last event, or to now.
-  double vertex_levels = 0;                   ///< Vertices times levels of jobs that are done.
-  std::int64_t bytes_done = 0;                ///< Size of the scans of jobs that have ended.
-  std::int64_t damaged_lines = 0;             ///< Number of damaged lines of the journal.
+  /// What was repaired or lost in jobs that are done, by heading, by name of the job.
+  std::map<std::string, std::map<std::string, std::string>> notes;
+  double seconds = 0;              ///< Time from the start to the last event, or to now.
+  double vertex_levels = 0;        ///< Vertices times levels of jobs that are done.
+  std::int64_t bytes_done = 0;     ///< Size of the scans of jobs that have ended.
+  std::int64_t damaged_lines = 0;  ///< Number of damaged lines of the journal.
 
   bool is_running() const { return owner.has_value() && last_run.has_value() && !ended; }
   /// Returns the number of jobs that have not ended.

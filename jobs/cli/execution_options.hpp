@@ -26,6 +26,7 @@ struct ExecutionOptions {
   bool keep_going = false;  ///< --keep-going was given; it is the default.
   std::string until;        ///< Time of day, such as "06:00"; empty if no end was given.
   bool json = false;        ///< Results are printed as JSON.
+  bool quiet = false;       ///< No progress is printed, and no failure before the end.
   bool verify = false;      ///< What counts as up to date is read completely.
   bool dry_run = false;     ///< Nothing is run.
   bool explain = false;     ///< Every reason for a job is printed.

@@ -1,11 +1,11 @@
 #include "jobs/cli/leftovers_report.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "io/files/number_text.hpp"
+#include "jobs/cli/output.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {
@@ -14,18 +14,6 @@ namespace fs = std::filesystem;
 
 std::string counted(std::ptrdiff_t count, std::string_view one) {
   return std::to_string(count) + ' ' + std::string(one) + (count == 1 ? "" : "s");
-}
-
-/// Returns the word as a shell takes it.
-std::string shell_word(const std::string& text) {
-  const auto is_plain = [](unsigned char c) {
-    return std::isalnum(c) != 0 || c >= 0x80 ||
-           std::string_view("/._-+=:,@").find(c) != std::string_view::npos;
-  };
-  if (!text.empty() && std::ranges::all_of(text, is_plain)) return text;
-  std::string word = "'";
-  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + '\'';
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "jobs/archive/verification.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/datasets.hpp"
+#include "jobs/cli/given_names.hpp"
 #include "jobs/cli/json_output.hpp"
 #include "jobs/cli/output.hpp"
 #include "jobs/cli/run_plan.hpp"
@@ -148,15 +149,19 @@ int remove(LibraryOptions& options) {
 
 int list(const LibraryOptions& options) {
   const io::HashLibrary library(options.library);
+  const GivenNames given(options.library);
   if (options.execution.json) {
     auto models = nlohmann::json::array();
-    for (const io::ModelInfo& model : library.models())
+    for (const io::ModelInfo& model : library.models()) {
       models.push_back({{"name", model.name},
                         {"digest", model.digest},
                         {"diagonal", model.diagonal},
                         {"features", model.features},
                         {"samples", model.samples},
                         {"triplets", model.triplets}});
+      if (const fs::path scan = given.scan_of(model.name); !scan.empty())
+        models.back()["scan"] = scan.string();
+    }
     print_document({{"models", models},
                     {"postings", library.posting_count()},
                     {"parameters", library.parameters()},
@@ -164,8 +169,8 @@ int list(const LibraryOptions& options) {
     return kAllDone;
   }
   for (const io::ModelInfo& model : library.models())
-    print(model.name, ": ", model.features, " features, ", model.triplets, " triplets, diagonal ",
-          model.diagonal, "\n");
+    print(given.shown(model.name), ": ", model.features, " features, ", model.triplets,
+          " triplets, diagonal ", model.diagonal, "\n");
   print(library.models().size(), " models, ", library.posting_count(), " triplets\n");
   return kAllDone;
 }

@@ -1,6 +1,7 @@
 #include "jobs/cli/output.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 
 namespace semigeo::jobs::cli {
@@ -21,6 +22,17 @@ void print_text(std::string_view text) {
 
 void print_error(std::string_view text) {
   std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
+std::string shell_word(const std::string& text) {
+  const auto is_plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c >= 0x80 ||
+           std::string_view("/._-+=:,@").find(c) != std::string_view::npos;
+  };
+  if (!text.empty() && std::ranges::all_of(text, is_plain)) return text;
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + '\'';
 }
 
 std::string padded(std::string text, std::size_t width) {

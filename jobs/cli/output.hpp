@@ -65,6 +65,9 @@ void complain(const Parts&... parts) {
   print_error("semigeo: " + line_of(parts...) + "\n");
 }
 
+/// Returns a word, such as a path, as a shell takes it: in quotes if need be.
+std::string shell_word(const std::string& text);
+
 /// Returns the text with spaces behind it, so that it has at least `width` characters.
 std::string padded(std::string text, std::size_t width);
 

@@ -7,6 +7,7 @@
 #include "io/files/error.hpp"
 #include "io/scans/scan_reader.hpp"
 #include "jobs/cli/command.hpp"
+#include "jobs/cli/failures.hpp"
 #include "jobs/cli/output.hpp"
 #include "jobs/cli/recognise_report.hpp"
 #include "jobs/cli/run_plan.hpp"
@@ -67,7 +68,10 @@ int recognise(RecogniseOptions& options) {
   if (options.output.empty()) temporary.emplace();
   const fs::path folder = temporary ? temporary->path() : fs::path(options.output);
   const RecogniseReport report = {
-      .top = options.top, .has_files = !temporary, .passed_over = scenes.passed_over};
+      .top = options.top,
+      .failures_were_told = !options.execution.quiet && outputs_are_one_place(),
+      .has_files = !temporary,
+      .passed_over = scenes.passed_over};
   return run_plan(
       options.execution,
       {.home = folder,

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "jobs/cli/failures.hpp"
+#include "jobs/cli/given_names.hpp"
 #include "jobs/cli/json_output.hpp"
 #include "jobs/cli/output.hpp"
 #include "jobs/cli/run_report.hpp"
@@ -40,12 +42,13 @@ constexpr std::size_t kIndent = 2;
 constexpr std::string_view kAlignment = "rlrrrrr";
 
 /// Returns a row. The thesis' method compares no surfaces, so it has no matches and conflicts.
-std::vector<std::string> row_of(std::size_t place, const json& candidate, bool has_shares) {
+std::vector<std::string> row_of(std::size_t place, const json& candidate, bool has_shares,
+                                const GivenNames& given) {
   const auto share = [&](const char* name) {
     return has_shares ? io::fixed_text(number(candidate, name), 3) : std::string("-");
   };
   return {std::to_string(place),
-          io::printable(name_of_model(candidate)),
+          io::printable(given.shown(name_of_model(candidate))),
           io::fixed_text(number(candidate, "score"), 4),
           share("match"),
           share("conflict"),
@@ -55,11 +58,11 @@ std::vector<std::string> row_of(std::size_t place, const json& candidate, bool h
 
 /// Returns the lines of a table of the first `count` candidates: its head, and a line for each.
 std::vector<std::string> table_of(const std::string& what, const json& candidates,
-                                  std::size_t count, bool has_shares) {
+                                  std::size_t count, bool has_shares, const GivenNames& given) {
   Rows rows = {{what, "model", "score", "match", "conflict", "votes", "cluster"}};
   for (const json& candidate : candidates) {
     if (rows.size() > count) break;
-    rows.push_back(row_of(rows.size(), candidate, has_shares));
+    rows.push_back(row_of(rows.size(), candidate, has_shares, given));
   }
   std::istringstream text(table_text(rows, kIndent, kAlignment));
   std::vector<std::string> lines;
@@ -93,12 +96,14 @@ std::string verdict(const json& document) {
                                  : std::string(" (no score reaches ") + least + ")");
 }
 
-void print_scene(const PlannedJob& planned, const json& document, std::size_t top) {
+void print_scene(const PlannedJob& planned, const json& document, std::size_t top,
+                 const GivenNames& given) {
   print(planned.job.input, ": ", verdict(document), "\n");
   const bool has_shares = document.at("search").at("method") != "thesis";
   const json& objects = document.at("objects");
   if (!objects.empty()) {
-    const std::vector<std::string> lines = table_of("object", objects, objects.size(), has_shares);
+    const std::vector<std::string> lines =
+        table_of("object", objects, objects.size(), has_shares, given);
     print_text(lines.front());
     for (std::size_t i = 0; i < objects.size(); ++i) {
       print_text(lines[i + 1]);
@@ -106,24 +111,36 @@ void print_scene(const PlannedJob& planned, const json& document, std::size_t to
     }
   }
   if (const json& ranking = document.at("ranking"); top > 0 && !ranking.empty())
-    for (const std::string& line : table_of("ranking", ranking, top, has_shares)) print_text(line);
+    for (const std::string& line : table_of("ranking", ranking, top, has_shares, given))
+      print_text(line);
   print("\n");
+}
+
+/// Adds to each candidate the scan that its model was made of, if it is known.
+void add_scans(json& content, const GivenNames& given) {
+  for (const char* list : {"objects", "ranking"})
+    for (json& candidate : content.at(list))
+      if (const auto scan = given.scan_of(name_of_model(candidate)); !scan.empty())
+        candidate["scan"] = scan.string();
 }
 
 }  // namespace
 
 void print_recognised(const RunResult& result, const SearchedLibrary& library,
                       const RecogniseReport& report) {
-  const auto& [plan, outcomes, summary] = result;
+  const auto& plan = result.plan;
+  const auto& outcomes = result.outcomes;
+  const RunSummary& summary = result.summary;
+  const GivenNames given(library.path);
   std::size_t found = 0;
   for (std::size_t i = 0; i < plan.size(); ++i) {
     if (!has_file(outcomes[i])) continue;
     const json document = read_recognised(plan[i].job.output);
     found += document.at("objects").empty() ? 0 : 1;
-    print_scene(plan[i], document, report.top);
+    print_scene(plan[i], document, report.top, given);
   }
-  for (const JobOutcome& outcome : outcomes)
-    if (outcome.state == JobState::kFailed) print("failed: ", outcome.error, "\n");
+  print_failures(failures_of(result), report.failures_were_told);
+  print_stop(result, report.failures_were_told);
   print_passed_over(report.passed_over);
   const auto done = static_cast<std::size_t>(std::ranges::count_if(outcomes, has_file));
   print(counted(plan.size(), "scene", "scenes"), ", ", counted(library.models, "model", "models"),
@@ -135,7 +152,10 @@ void print_recognised(const RunResult& result, const SearchedLibrary& library,
 
 void print_recognised_json(const RunResult& result, const SearchedLibrary& library,
                            const RecogniseReport& report) {
-  const auto& [plan, outcomes, summary] = result;
+  const auto& plan = result.plan;
+  const auto& outcomes = result.outcomes;
+  const RunSummary& summary = result.summary;
+  const GivenNames given(library.path);
   json document = {{"scenes", json::array()},
                    {"library", {{"path", library.path.string()}, {"digest", library.digest}}},
                    {"done", summary.done},
@@ -155,11 +175,13 @@ void print_recognised_json(const RunResult& result, const SearchedLibrary& libra
       json& ranking = content["ranking"];
       if (ranking.size() > report.top)
         ranking.erase(ranking.begin() + static_cast<std::ptrdiff_t>(report.top), ranking.end());
+      add_scans(content, given);
       scene["recognised"] = std::move(content);
     }
     document["scenes"].push_back(std::move(scene));
   }
   add_passed_over(document, report.passed_over);
+  if (!result.stopped.empty()) document["stopped"] = result.stopped;
   print_document(document);
 }
 

@@ -10,9 +10,10 @@ namespace semigeo::jobs::cli {
 
 /// Says how much of the results is printed.
 struct RecogniseReport {
-  std::size_t top = 5;     ///< Number of models of each ranking.
-  bool has_files = true;   ///< The files are kept, so their paths are printed.
-  PassedOver passed_over;  ///< Files that are no scenes.
+  std::size_t top = 5;              ///< Number of models of each ranking.
+  bool failures_were_told = false;  ///< Each failure was printed in the same place before.
+  bool has_files = true;            ///< The files are kept, so their paths are printed.
+  PassedOver passed_over;           ///< Files that are no scenes.
 };
 
 /// Prints on stdout for each scene its objects with their poses and the first models of the

@@ -6,9 +6,11 @@
 #include <memory>
 #include <string>
 
+#include "io/files/write_error.hpp"
 #include "jobs/archive/archive_lock.hpp"
 #include "jobs/archive/estimates.hpp"
 #include "jobs/cli/command.hpp"
+#include "jobs/cli/failures.hpp"
 #include "jobs/cli/output.hpp"
 #include "jobs/cli/run_report.hpp"
 #include "jobs/plan/plan_graph.hpp"
@@ -82,7 +84,10 @@ int print_results(const ExecutionOptions& options, const PlanSource& source,
   } else if (options.json) {
     print_json(result, source.notes());
   } else {
-    print_run(result, source.notes());
+    RunNotes notes = source.notes();
+    notes.failures_were_told = !options.quiet && outputs_are_one_place();
+    notes.home = source.home;
+    print_run(result, notes);
   }
   if (result.summary.not_run > 0) return kStoppedEarly;
   return result.summary.failed == 0 ? kAllDone : kSomeFailed;
@@ -111,6 +116,7 @@ int run(const ExecutionOptions& options, const PlanSource& source) {
                .verify = options.verify,
                .is_archive = source.is_archive,
                .is_kept = source.is_kept,
+               .is_quiet = options.quiet,
                .must_write = source.must_write},
               hooks);
   return exit_code;
@@ -125,6 +131,9 @@ int run_plan(const ExecutionOptions& options, const PlanSource& source) {
   } catch (const LockedError& e) {
     complain(e);
     return kLocked;
+  } catch (const io::WriteError& e) {
+    complain(e);
+    return io::concerns_the_place(e.code()) ? kStoppedEarly : kSomeFailed;
   }
 }
 

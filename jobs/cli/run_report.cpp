@@ -1,10 +1,13 @@
 #include "jobs/cli/run_report.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 
+#include "jobs/cli/failures.hpp"
 #include "jobs/cli/json_output.hpp"
 #include "jobs/cli/output.hpp"
 #include "jobs/plan/job_kind.hpp"
@@ -39,21 +42,72 @@ void add_to(nlohmann::json& document, const PlannedJob& planned, nlohmann::json&
   document[stands_for_scan ? "scans" : "jobs"].push_back(std::move(entry));
 }
 
+/// A line of the report about one job.
+struct NamedLine {
+  std::string name;  ///< Name of the job.
+  ReportLine line;
+};
+
+/// Returns "1204 degenerate faces, 30 flipped faces and others": the sums over all lines, the
+/// largest first.
+std::string sums_of(const std::vector<NamedLine>& lines) {
+  constexpr std::ptrdiff_t kMostSums = 3;
+  std::map<std::string, std::int64_t> by_name;
+  for (const NamedLine& named : lines)
+    for (const auto& [name, count] : named.line.counts) by_name[name] += count;
+  std::erase_if(by_name, [](const auto& sum) { return sum.second == 0; });
+  std::vector<std::pair<std::string, std::int64_t>> sums(by_name.begin(), by_name.end());
+  std::ranges::stable_sort(sums, std::ranges::greater(),
+                           [](const auto& sum) { return sum.second; });
+  std::string text;
+  for (std::ptrdiff_t i = 0; i < std::min(std::ssize(sums), kMostSums); ++i)
+    text += (i == 0 ? "" : ", ") + std::to_string(sums[static_cast<std::size_t>(i)].second) + " " +
+            sums[static_cast<std::size_t>(i)].first;
+  return text + (std::ssize(sums) > kMostSums ? " and others" : "");
+}
+
+/// Prints the lines of many jobs: their sums, and the names of those that have lost most.
+void print_many(std::vector<NamedLine> lines, const std::string& plural) {
+  constexpr std::size_t kMostNameCharacters = 24;
+  print(lines.front().line.heading, ": ", lines.size(), " ", plural, ": ", sums_of(lines), "\n");
+  std::erase_if(lines, [](const NamedLine& named) { return named.line.loss <= 0; });
+  if (lines.empty()) return;
+  std::ranges::stable_sort(lines, std::ranges::greater(),
+                           [](const NamedLine& named) { return named.line.loss; });
+  std::string worst = "  most: ";
+  for (std::size_t i = 0; i < std::min(lines.size(), kFew); ++i) {
+    const std::string name = io::printable(lines[i].name);
+    const bool fits = io::count_characters(name) <= kMostNameCharacters;
+    worst +=
+        (i == 0 ? "" : ", ") +
+        (fits ? name : std::string(io::first_characters(name, kMostNameCharacters - 3)) + "...");
+  }
+  print_text(worst + "\n");
+}
+
 /// Prints the reports of the jobs of one kind: the first lines of all jobs, then the second ones.
-void print_reports(const RunResult& result, const JobKind& kind) {
-  std::vector<std::pair<std::size_t, JobReport>> reports;
-  std::size_t most_lines = 0;
+/// Returns whether something was left out.
+bool print_reports(const RunResult& result, const JobKind& kind) {
+  std::vector<std::vector<NamedLine>> lines;
   for (std::size_t i = 0; i < result.plan.size(); ++i) {
     const Job& job = result.plan[i].job;
     if (job.kind != &kind || !result.outcomes[i].result.has_value()) continue;
-    reports.emplace_back(i, kind.report(job, result.outcomes[i].result));
-    most_lines = std::max(most_lines, reports.back().second.lines.size());
+    const JobReport report = kind.report(job, result.outcomes[i].result);
+    lines.resize(std::max(lines.size(), report.lines.size()));
+    for (std::size_t k = 0; k < report.lines.size(); ++k)
+      if (!report.lines[k].text.empty()) lines[k].push_back({job.name, report.lines[k]});
   }
-  for (std::size_t k = 0; k < most_lines; ++k)
-    for (const auto& [i, report] : reports)
-      if (k < report.lines.size() && !report.lines[k].text.empty())
-        print(report.lines[k].heading, ": ", result.plan[i].job.name, ": ", report.lines[k].text,
-              "\n");
+  bool shortened = false;
+  for (const std::vector<NamedLine>& of_heading : lines) {
+    if (of_heading.size() > kFew) {
+      print_many(of_heading, kind.words().plural);
+      shortened = true;
+      continue;
+    }
+    for (const NamedLine& named : of_heading)
+      print(named.line.heading, ": ", named.name, ": ", named.line.text, "\n");
+  }
+  return shortened;
 }
 
 /// Returns the kinds of a plan, in the order in which they appear.
@@ -101,6 +155,18 @@ void add_notes(nlohmann::json& document, const RunNotes& notes) {
 
 }  // namespace
 
+void print_stop(const RunResult& result, bool told) {
+  if (!result.stopped.empty() && !told) print("stopped: ", result.stopped, "\n");
+}
+
+std::vector<Failure> failures_of(const RunResult& result) {
+  std::vector<Failure> failures;
+  for (std::size_t i = 0; i < result.plan.size(); ++i)
+    if (result.outcomes[i].state == JobState::kFailed)
+      failures.push_back({result.outcomes[i].error, subject_of(result.plan[i].job).string()});
+  return failures;
+}
+
 void print_plan(const std::vector<PlannedJob>& plan, bool json, bool explain,
                 const RunNotes& notes) {
   if (json) {
@@ -146,6 +212,7 @@ void print_json(const RunResult& result, const RunNotes& notes) {
                              {"cpu_seconds", summary.cpu_seconds},
                              {"peak_memory_bytes", summary.peak_bytes}};
   add_notes(document, notes);
+  if (!result.stopped.empty()) document["stopped"] = result.stopped;
   for (std::size_t i = 0; i < result.plan.size(); ++i) {
     const Job& job = result.plan[i].job;
     const JobOutcome& outcome = result.outcomes[i];
@@ -164,14 +231,17 @@ void print_json(const RunResult& result, const RunNotes& notes) {
 }
 
 void print_run(const RunResult& result, const RunNotes& notes) {
-  for (const JobKind* kind : kinds_of(result.plan)) print_reports(result, *kind);
-  for (const JobOutcome& outcome : result.outcomes)
-    if (outcome.state == JobState::kFailed) print("failed: ", outcome.error, "\n");
+  bool shortened = false;
+  for (const JobKind* kind : kinds_of(result.plan)) shortened |= print_reports(result, *kind);
+  shortened |= print_failures(failures_of(result), notes.failures_were_told);
+  print_stop(result, notes.failures_were_told);
   for (std::size_t i = 0; i < result.plan.size(); ++i) {
     const Job& job = result.plan[i].job;
     if (const auto told = job.kind->summary(job, result.outcomes[i].state)) print(told->text, "\n");
   }
   print_notes(notes);
+  if (shortened && !notes.home.empty())
+    print("details: semigeo status ", shell_word(notes.home.string()), " --details\n");
   const RunSummary& summary = result.summary;
   const std::string rate =
       summary.vertex_levels > 0 ? short_number(summary.rate()) + " vertex levels/s; " : "";

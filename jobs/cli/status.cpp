@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "jobs/archive/status.hpp"
 #include "jobs/cli/command.hpp"
+#include "jobs/cli/failures.hpp"
 #include "jobs/cli/json_output.hpp"
 #include "jobs/cli/output.hpp"
 #include "jobs/run/progress.hpp"
@@ -14,6 +17,7 @@ namespace {
 struct StatusOptions {
   std::string archive;
   bool json = false;
+  bool details = false;  ///< Every failure and every repair is printed.
 };
 
 /// Returns the state of the last run in one or two words.
@@ -41,6 +45,7 @@ nlohmann::json to_json(const ArchiveStatus& status) {
   document["left"] = status.left();
   document["running"] = status.running;
   document["failed"] = status.failed;
+  document["notes"] = status.notes;
   document["seconds"] = status.seconds;
   document["vertex_levels_per_second"] = status.vertex_levels_per_second();
   if (const auto left = status.seconds_left()) document["seconds_left"] = *left;
@@ -59,7 +64,7 @@ void print_counts(const ArchiveStatus& status) {
   print("\n");
 }
 
-void print_status(const ArchiveStatus& status) {
+void print_status(const ArchiveStatus& status, bool details) {
   print(std::string_view(state_of(status)));
   if (status.last_run) print(", started ", status.started, ", ", short_duration(status.seconds));
   if (status.owner)
@@ -73,7 +78,16 @@ void print_status(const ArchiveStatus& status) {
   for (const auto& [job, seconds] : status.running)
     print(std::string_view(status.is_running() ? "running" : "cut off"), ": ", job, ", since ",
           short_duration(seconds), "\n");
-  for (const auto& [job, error] : status.failed) print("failed: ", job, ": ", error, "\n");
+  if (details || status.failed.size() <= kFew) {
+    for (const auto& [job, error] : status.failed) print("failed: ", job, ": ", error, "\n");
+  } else {
+    std::vector<Failure> failures;
+    for (const auto& [job, error] : status.failed) failures.push_back({error});
+    print_failures(failures);
+  }
+  if (details)
+    for (const auto& [job, notes] : status.notes)
+      for (const auto& [heading, text] : notes) print(heading, ": ", job, ": ", text, "\n");
   print(status.datasets, " datasets in the archive\n");
 }
 
@@ -86,12 +100,14 @@ void add_status(CLI::App& app, int& exit_code) {
   command->footer(
       "Examples:\n"
       "  semigeo status archive          done, failed and why, running, how fast, how much longer\n"
+      "  semigeo status archive --details   every failure, and what was repaired and lost\n"
       "  semigeo status archive --json   the same for programs\n");
   command->add_option("archive", options->archive, "The archive")->required();
+  command->add_flag("--details", options->details, "Name every failure, repair and loss");
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options, &exit_code] {
     const ArchiveStatus status = status_of(options->archive);
-    options->json ? print_document(to_json(status)) : print_status(status);
+    options->json ? print_document(to_json(status)) : print_status(status, options->details);
     exit_code = kAllDone;
   });
 }

@@ -1,5 +1,6 @@
 #include "jobs/kinds/library.hpp"
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -46,6 +47,17 @@ std::vector<fs::path> partition_paths(const Job& job, int partitions) {
   return paths;
 }
 
+/// Returns "; missing: a, b and 17 more", or an empty text.
+std::string missing_in_words(const std::vector<std::string>& missing) {
+  constexpr std::size_t kMostNames = 5;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(missing.size(), kMostNames); ++i)
+    text += (i == 0 ? "; missing: " : ", ") + missing[i];
+  if (missing.size() > kMostNames)
+    text += " and " + std::to_string(missing.size() - kMostNames) + " more";
+  return text;
+}
+
 class LibraryKind final : public TypedJobKind<LibraryJobData, LibraryJobResult> {
  public:
   const JobWords& words() const override { return words_; }
@@ -90,8 +102,7 @@ class LibraryKind final : public TypedJobKind<LibraryJobData, LibraryJobResult> 
     if (is_made(state)) {
       text += std::to_string(models) + " models";
       if (state == JobState::kUpToDate) text += ", up to date";
-      for (const std::string& model : missing)
-        text += (&model == &missing.front() ? "; missing: " : ", ") + model;
+      text += missing_in_words(missing);
     } else {
       text += name_of(state);
     }

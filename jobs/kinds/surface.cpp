@@ -98,6 +98,10 @@ json quality_json(const ScanQuality& quality) {
           {"without_patch", quality.without_patch},
           {"on_small_parts", quality.on_small_parts}};
 }
+/// The share of changed vertices from which a scan is worth a look.
+constexpr double kManyChanges = 0.01;
+/// A surface that has vanished stands before all that have lost parts only.
+constexpr double kVanishedLoss = 1e9;
 
 /// Returns "3 welded vertices, 1 split vertices"; empty if nothing was repaired.
 std::string repairs_in_words(const SurfaceJobResult& result) {
@@ -174,6 +178,60 @@ std::string evolution_in_words(const SurfaceJobResult& result) {
     text +=
         (text.empty() ? "" : "; ") + std::string("too thin for so many levels: it has vanished");
   return text;
+}
+
+ReportLine repair_line(const SurfaceJobResult& made) {
+  const kernels::SurfaceRepairs& repairs = made.repairs.surface;
+  ReportLine line{.heading = "repaired", .text = repairs_in_words(made)};
+  each_scan_repair(made.repairs, [&](std::string name, std::int64_t count) {
+    std::ranges::replace(name, '_', ' ');
+    // Bytes are no parts of a surface, and would stand before all of them.
+    if (!name.starts_with("bytes")) line.counts.emplace_back(std::move(name), count);
+  });
+  // Welding is what every STL needs. Dropped faces are worth a look, and so are many changes.
+  const auto share = [](std::int64_t count, std::int64_t of) {
+    return static_cast<double>(count) / static_cast<double>(std::max<std::int64_t>(of, 1));
+  };
+  const std::int64_t dropped = repairs.degenerate_faces + repairs.duplicate_faces +
+                               made.repairs.faces_skipped + made.repairs.faces_of_bad_vertices;
+  const double changed = share(repairs.gap_vertices + repairs.flipped_faces +
+                                   repairs.nonmanifold_edges + repairs.split_vertices,
+                               made.vertices);
+  line.loss = share(dropped, made.triangles + dropped) + (changed >= kManyChanges ? changed : 0);
+  return line;
+}
+
+ReportLine doubt_line(const SurfaceJobResult& made) {
+  const ScanQuality& quality = made.quality;
+  ReportLine line{.heading = "doubtful", .text = doubts_in_words(made)};
+  if (line.text.empty()) return line;
+  const bool coarse = quality.coordinate_step > kCoarseStep * quality.mean_edge_length;
+  line.counts = {{"vertices without curvature", quality.without_patch},
+                 {"scans with coarse coordinates", coarse ? 1 : 0}};
+  line.loss = static_cast<double>(quality.without_patch) /
+                  static_cast<double>(std::max<std::int64_t>(made.vertices, 1)) +
+              (coarse ? 1 : 0);
+  return line;
+}
+
+ReportLine preparation_line(const PreparationResult& preparation) {
+  const kernels::HoleCounts& holes = preparation.holes;
+  return {.heading = "prepared",
+          .text = in_words(preparation),
+          .counts = {{"holes filled", holes.filled},
+                     {"holes left", holes.outer + holes.too_long + holes.unsplittable},
+                     {"vertices removed", preparation.removed_vertices}},
+          .loss = static_cast<double>(holes.too_long + holes.unsplittable)};
+}
+
+ReportLine evolution_line(const SurfaceJobResult& made) {
+  const std::int64_t lost = made.remeshed.dropped_parts;
+  return {.heading = "evolved",
+          .text = evolution_in_words(made),
+          .counts = {{"necks torn", made.remeshed.torn},
+                     {"parts lost", lost},
+                     {"surfaces vanished", made.vanished ? 1 : 0}},
+          .loss = static_cast<double>(lost) + (made.vanished ? kVanishedLoss : 0)};
 }
 
 /// Returns whether the sidecar could be made. If not, the dataset must be made, too.
@@ -266,10 +324,8 @@ class SurfaceKind final : public TypedJobKind<SurfaceJobData, SurfaceJobResult> 
                      {"preparation", json_of(made.preparation, wanted)},
                      {"vanished", made.vanished},
                      {"remeshing", json_of(made.remeshed)}};
-    report.lines = {{"repaired", repairs_in_words(made)},
-                    {"doubtful", doubts_in_words(made)},
-                    {"prepared", in_words(made.preparation)},
-                    {"evolved", evolution_in_words(made)}};
+    report.lines = {repair_line(made), doubt_line(made), preparation_line(made.preparation),
+                    evolution_line(made)};
     return report;
   }
 

@@ -56,10 +56,14 @@ struct ExternalFile {
   bool is_readable = true;
 };
 
-/// One line of the report about a job. It is printed as "<heading>: <name of the job>: <text>".
+/// One line of the report about a job. It is printed as "<heading>: <name of the job>: <text>". If
+/// many jobs of a run have such a line, their counts are added up, and the worst jobs are named.
 struct ReportLine {
   std::string heading;  ///< "repaired"
   std::string text;     ///< If it is empty, the line is left out.
+  /// What is added up: "degenerate faces" and their number. Names that have 0 may be there.
+  std::vector<std::pair<std::string, std::int64_t>> counts = {};
+  double loss = 0;  ///< How much the job has lost or changed, to compare; 0: nothing to look at.
 };
 
 /// The report of a run about one job that is done.

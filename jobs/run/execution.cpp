@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "io/files/error.hpp"
+#include "io/files/write_error.hpp"
 #include "jobs/plan/job_kind.hpp"
 #include "jobs/run/scheduler.hpp"
 
@@ -119,6 +120,10 @@ class Execution {
     begin(job);
     outcomes_[job] = std::move(event.outcome);
     const JobOutcome& outcome = outcomes_[job];
+    if (outcome.state == JobState::kFailed && io::concerns_the_place(outcome.write_error)) {
+      stop_at(job);
+      return;
+    }
     // A job that never ran because its inputs are missing is skipped. It has not failed itself.
     const bool skipped = outcome.state == JobState::kFailed && outcome.threads == 0 &&
                          scheduler_.follows_failure(job);
@@ -148,6 +153,19 @@ class Execution {
       scheduler_.stop();
     }
     if (event.requests > 1) runner_.cancel_running();
+  }
+
+  /// Stops the run because no output can be written any more. The fault is not the job's, so the
+  /// job has not run. Only the first such job is told.
+  void stop_at(std::size_t job) {
+    if (std::exchange(told_place_, true)) {
+      outcomes_[job].error.clear();
+    } else {
+      progress_.say("stopping: " + outcomes_[job].error);
+    }
+    outcomes_[job].state = JobState::kNotRun;
+    scheduler_.stop();
+    scheduler_.lose(job, true);
   }
 
   void begin(std::size_t job) {
@@ -181,6 +199,7 @@ class Execution {
   std::vector<JobOutcome> outcomes_;
   std::vector<bool> begun_;  ///< Progress and listener were told of it.
   bool cancelled_waiting_ = false;
+  bool told_place_ = false;  ///< It was told that no output can be written.
 };
 
 }  // namespace

@@ -35,8 +35,10 @@ std::vector<Estimate> estimates_of(const std::vector<PlannedJob>& plan, const Es
 /// begins when those before it have ended, whether done or failed, and takes the outputs that exist
 /// (JobKind::resolve_inputs). A job without inputs is skipped if a job before it has failed. A job
 /// whose process was lost is tried again, `retries` times. The first signal lets the running jobs
-/// end and starts no more; the second ends them. outcomes[i] belongs to plan[i]. Throws what the
-/// runner throws.
+/// end and starts no more; the second ends them. If the place of the outputs cannot be written any
+/// more (io::concerns_the_place), the running jobs may end and no more starts; the jobs that met
+/// the error have not run, and the outcome of the first says why. outcomes[i] belongs to plan[i].
+/// Throws what the runner throws.
 std::vector<JobOutcome> execute(std::vector<PlannedJob> plan, Runner& runner,
                                 const ExecutionSettings& settings, Progress& progress,
                                 JobListener* listener = nullptr,

@@ -67,6 +67,7 @@ std::string to_line(const JobReply& reply) {
     object["peak_bytes"] = reply.peak_bytes;
     if (reply.kind == JobReply::Kind::kDone) object["done"] = reply.result;
     if (reply.kind == JobReply::Kind::kFailed) object["failed"] = reply.error;
+    if (reply.write_error != 0) object["write_error"] = reply.write_error;
   }
   // What the file system says need not be UTF-8.
   return object.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -78,6 +79,7 @@ JobReply job_reply_from(const std::string& line) {
     object.at("worked").get_to(reply.worked);
     if (const auto failed = object.find("failed"); failed != object.end()) {
       failed->get_to(reply.error);
+      reply.write_error = object.value("write_error", 0);
     } else if (const auto done = object.find("done"); done != object.end()) {
       reply.kind = JobReply::Kind::kDone;
       reply.result = *done;

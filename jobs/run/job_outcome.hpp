@@ -16,6 +16,7 @@ struct JobOutcome {
   double seconds = 0;
   double cpu_seconds = 0;
   double peak_bytes = 0;  ///< The most memory that was resident at once.
+  int write_error = 0;    ///< The errno if the output could not be written; otherwise 0.
   int threads = 0;
   int attempts = 0;
 };

@@ -158,6 +158,7 @@ RunnerEvent LocalRunner::answered(std::map<Child, Running>::iterator at, const s
   if (reply.kind == JobReply::Kind::kWorked) return WorkDone{reply.worked};
   outcome.state = reply.kind == JobReply::Kind::kDone ? JobState::kDone : JobState::kFailed;
   outcome.error = std::move(reply.error);
+  outcome.write_error = reply.write_error;
   outcome.seconds = at->second.clock();
   outcome.cpu_seconds = reply.cpu_seconds;
   outcome.peak_bytes = reply.peak_bytes;

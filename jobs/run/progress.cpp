@@ -68,8 +68,8 @@ std::string short_duration(double seconds) {
   return std::to_string(whole / 3600) + " h " + two_digits(whole % 3600 / 60) + " min";
 }
 
-Progress::Progress(std::int64_t jobs, std::uintmax_t bytes)
-    : jobs_(jobs), bytes_(bytes), terminal_(isatty(STDERR_FILENO) != 0) {}
+Progress::Progress(std::int64_t jobs, std::uintmax_t bytes, bool quiet)
+    : jobs_(jobs), bytes_(bytes), terminal_(isatty(STDERR_FILENO) != 0), quiet_(quiet) {}
 
 Progress::~Progress() {
   if (live_) std::fputs("\r\033[K", stderr);
@@ -95,6 +95,7 @@ void Progress::job_ended(bool ok, std::uintmax_t bytes) {
 }
 
 void Progress::say(const std::string& line) {
+  if (quiet_) return;
   const std::scoped_lock lock(mutex_);
   std::fprintf(stderr, "%s%s\n", live_ ? "\r\033[K" : "", io::printable(line).c_str());
   live_ = false;
@@ -116,6 +117,7 @@ std::string Progress::counts() const {
 }
 
 void Progress::show(bool force) {
+  if (quiet_) return;
   const auto now = Clock::now();
   if (terminal_) {
     if (!force && now - shown_ < kLiveInterval) return;

@@ -15,8 +15,8 @@ namespace semigeo::jobs {
 class Progress : public engine::Observer {
  public:
   /// Starts a run of `jobs` jobs that read `bytes` bytes of scans. The time left is estimated from
-  /// the bytes.
-  Progress(std::int64_t jobs, std::uintmax_t bytes);
+  /// the bytes. A quiet one counts and prints nothing.
+  Progress(std::int64_t jobs, std::uintmax_t bytes, bool quiet = false);
   ~Progress() override;
 
   /// Counts work, in vertices times levels.
@@ -40,6 +40,7 @@ class Progress : public engine::Observer {
   const std::int64_t jobs_;
   const std::uintmax_t bytes_;
   const bool terminal_;
+  const bool quiet_;
   const Clock::time_point start_ = Clock::now();
   std::atomic<std::int64_t> vertex_levels_ = 0;
   std::mutex mutex_;  ///< Guards the members below.

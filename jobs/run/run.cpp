@@ -96,12 +96,18 @@ class Run {
       outcomes.assign(result_.plan.size(), {.state = JobState::kUpToDate});
       return;
     }
-    Progress progress(jobs_to_run(), static_cast<std::uintmax_t>(bytes_to_read(result_.plan)));
+    Progress progress(jobs_to_run(), static_cast<std::uintmax_t>(bytes_to_read(result_.plan)),
+                      settings_.is_quiet);
     Runner& runner = hooks_.runner(result_.plan);
     outcomes = execute(result_.plan, runner, hooks_.settings(), progress,
                        journal_ ? &*journal_ : nullptr, clock_);
     waited_ = runner.waits();
     summary.vertex_levels = progress.vertex_levels();
+    const auto refused = std::ranges::find_if(outcomes, [](const JobOutcome& outcome) {
+      return outcome.state == JobState::kNotRun && outcome.write_error != 0 &&
+             !outcome.error.empty();
+    });
+    if (refused != outcomes.end()) result_.stopped = refused->error;
     const auto count = [&](JobState state) {
       return std::ranges::count(outcomes, state, &JobOutcome::state);
     };
@@ -144,7 +150,7 @@ class Run {
                          .failed = summary.failed,
                          .seconds = summary.wall_seconds,
                          .cpu_seconds = summary.cpu_seconds});
-    if (!journal_->problem().empty()) hooks_.warn(journal_->problem());
+    if (!journal_->problem().empty()) warn(journal_->problem());
   }
 
   /// Saves the digests of the outputs and the learned rates for the next run.
@@ -164,8 +170,13 @@ class Run {
     try {
       action();
     } catch (const io::Error& e) {
-      hooks_.warn(e.what());
+      warn(e.what());
     }
+  }
+
+  /// Warns of a problem, unless it is known already that nothing can be written.
+  void warn(const std::string& problem) {
+    if (result_.stopped.empty()) hooks_.warn(problem);
   }
 
   const RunSettings& settings_;

@@ -39,6 +39,7 @@ struct RunSettings {
   bool verify = false;          ///< Outputs are read instead of trusting the digest cache.
   bool is_archive = true;       ///< The home is an archive; rates of its jobs are learned.
   bool is_kept = true;          ///< The home is kept; otherwise it gets neither lock nor journal.
+  bool is_quiet = false;        ///< No progress is printed.
   bool must_write = false;      ///< A home that cannot be written is a failure in any case.
 };
 
@@ -46,6 +47,7 @@ struct RunSettings {
 struct RunResult {
   std::vector<PlannedJob> plan;
   std::vector<JobOutcome> outcomes;  ///< outcomes[i] belongs to plan[i].
+  std::string stopped = {};  ///< Why outputs could not be written any more; empty if they could.
   RunSummary summary;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 #include "io/files/error.hpp"
 #include "jobs/archive/process_identity.hpp"
@@ -53,6 +54,9 @@ void RunJournal::job_ended(const PlannedJob& planned, const JobOutcome& outcome)
                  .cpu_seconds = outcome.cpu_seconds,
                  .peak_bytes = outcome.peak_bytes,
                  .threads = outcome.threads};
+  if (outcome.result.has_value())
+    for (ReportLine& line : planned.job.kind->report(planned.job, outcome.result).lines)
+      if (!line.text.empty()) ended.notes[line.heading] = std::move(line.text);
   planned.job.kind->describe(planned.job, outcome.result, ended);
   write(ended);
 }

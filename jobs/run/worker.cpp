@@ -20,6 +20,7 @@
 
 #include "engine/descriptor.hpp"
 #include "io/files/error.hpp"
+#include "io/files/write_error.hpp"
 #include "jobs/run/job_line.hpp"
 #include "jobs/run/process_usage.hpp"
 
@@ -137,7 +138,8 @@ class JobLog {
   bool open_anew(const fs::path& path) {
     std::error_code ignored;
     if (file_) fs::remove(path_, ignored);
-    fs::create_directories(path.parent_path(), ignored);
+    // Only the folder itself: an archive that is gone is not made again.
+    fs::create_directory(path.parent_path(), ignored);
     file_ = engine::Descriptor(open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
     path_ = path;
     return static_cast<bool>(file_);
@@ -226,6 +228,9 @@ JobReply do_job(const JobRequest& request, JobLog& log, Reporter& reporter) {
                   std::to_string(request.address_space_bytes >> 20) +
                   " MiB of memory that a job may have; give --memory-per-job more" +
                   request.job.kind->words().memory_remedy;
+  } catch (const io::WriteError& e) {
+    reply.error = e.what();
+    reply.write_error = e.code();
   } catch (const io::Error& e) {
     reply.error = e.what();
   } catch (

@@ -41,7 +41,7 @@ def keys_of(document):
     if isinstance(document, dict):
         for key, value in document.items():
             keys.add(key)
-            if key not in ("parameters", "done_by_kind", "running", "failed", "recognised"):
+            if key not in ("parameters", "done_by_kind", "running", "failed", "notes", "recognised"):
                 keys |= keys_of(value)
     elif isinstance(document, list):
         for value in document:

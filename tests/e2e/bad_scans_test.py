@@ -80,11 +80,12 @@ class BadScansTest(SemigeoTest):
         self.assertEqual(partials(self.archive), {})
         self.semigeo("check", self.archive)
 
-        # As text: one line each, on stdout, and the totals last.
+        # As text: counted by reason on stdout, one line each on stderr, and the totals last.
         process = self.semigeo("run", self.scans, "--output", self.archive, "--levels", 2, code=1)
         lines = process.stdout.splitlines()
-        self.assertEqual(sum(line.startswith("failed: ") for line in lines), len(cases))
-        self.assertEqual(lines[-2], "passed over: 2 .jpg, 1 .mtl")
+        self.assertIn("failed, ", process.stdout)
+        self.assertEqual(sum(line.startswith("failed: ") for line in process.stderr.splitlines()), len(cases))
+        self.assertEqual(lines[-3], "passed over: 2 .jpg, 1 .mtl")
         self.assertIn(f"0 done, 3 up to date, {len(cases)} failed", lines[-1])
 
     def test_names_that_are_no_utf8(self):

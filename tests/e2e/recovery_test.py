@@ -208,15 +208,12 @@ class DiskTest(RecoveryTest):
                 self.mount(f"size={max(4096, self.need() * tenth // 10)}")
                 try:
                     process = self.semigeo("run", self.scans, "--output", self.archive, *LEVELS,
-                                           code=1)
-                    said = process.stdout + process.stderr
-                    reasons = [line for line in said.splitlines() if "space" in line.lower()]
-                    self.assertTrue(reasons, said)
-                    for line in said.splitlines():
-                        if line.startswith("failed: "):
-                            self.assertIn(str(self.archive), line)
-                            self.assertIn("No space left on device", line)
+                                           code=75)
+                    reasons = [line for line in process.stderr.splitlines() if "space" in line.lower()]
+                    self.assertEqual(len(reasons), 1, process.stderr)
                     self.assertIn(str(self.archive), reasons[0])
+                    self.assertIn("No space left on device", reasons[0])
+                    self.assertNotIn("failed: ", process.stdout + process.stderr)
                     self.assert_whole()
                     self.assertFalse(list(self.archive.rglob("*.partial")))
                     kept = self.datasets()

@@ -150,9 +150,11 @@ class NamesTest(SemigeoTest):
     def test_one_failure_is_one_line(self):
         stdout, stderr = self.outputs("run", self.scans, "-o", self.archive)
         failed = len(HOSTILE + KIND)
-        for data in (stdout, stderr):
-            lines = [line for line in data.decode().splitlines() if line.startswith("failed: ")]
-            self.assertEqual(len(lines), failed)
+        lines = [line for line in stderr.decode().splitlines() if line.startswith("failed: ")]
+        self.assertEqual(len(lines), failed)
+        lines = [line for line in stdout.decode().splitlines() if line.startswith("failed")]
+        self.assertEqual(len(lines), 1)
+        self.assertIn(f"failed, {failed} times: ", lines[0])
 
     def test_names_of_every_script_are_shown_as_they_are(self):
         _, stderr = self.outputs("run", self.scans, "-o", self.archive)
@@ -163,6 +165,46 @@ class NamesTest(SemigeoTest):
             self.assertIn(f"\n{name}  ", "\n" + listed.decode())
             self.assertIn(str(self.scans / name),
                           [scan["input"] for scan in json.loads(scans)["scans"]])
+
+
+class GivenNamesTest(SemigeoTest):
+    """Models are shown under the names of their scans, in any script."""
+
+    def test_models_have_the_names_that_people_gave(self):
+        names = ("像 7.ply", "50% Öl.ply", "plain.ply", "esc\x1b[31m.ply")
+        for seed, name in enumerate(names):
+            write_ply(self.scans / name, boulder(3, seed))
+        self.semigeo("run", self.scans, "-o", self.archive, "--library", *LEVELS)
+        listed = self.semigeo("library", "list", self.archive)
+        said = self.semigeo("recognise", self.scans / "像 7.ply", "--library", self.archive)
+        for text in (listed.stdout, said.stdout):
+            self.assertIn("像 7.ply (____7.ply-", text)
+            self.assertRegex(text, r"(?m)(^| )plain\.ply\b")
+            self.assertNotIn("plain.ply (", text)
+            self.assertNotIn("%20", text)
+            self.assertNotIn("\x1b", text)
+        self.assertIn("50% Öl.ply (", listed.stdout)
+        self.assertIn("esc\\x1b[31m.ply (", listed.stdout)
+        models = json.loads(self.semigeo("library", "list", self.archive, "--json").stdout)["models"]
+        self.assertEqual({Path(model["scan"]).name for model in models}, set(names))
+        document = json.loads(self.semigeo("recognise", self.scans / "像 7.ply", "--library",
+                                           self.archive, "--json").stdout)
+        best = document["scenes"][0]["recognised"]["ranking"][0]
+        self.assertEqual(best["scan"], str(self.scans / "像 7.ply"))
+
+    def test_models_of_a_library_elsewhere_keep_their_names_in_any_script(self):
+        write_ply(self.scans / "a.ply", boulder(3, 1))
+        self.semigeo("run", self.scans, "-o", self.archive, *LEVELS)
+        for name in ("статуя", "像 50%41"):
+            self.dataset(name).write_bytes(self.dataset("a.ply").read_bytes())
+        library = self.folder / "mine.h5"
+        datasets = [self.dataset(name) for name in ("статуя", "像 50%41")]
+        self.semigeo("library", "build", *datasets, "--output", library)
+        models = json.loads(self.semigeo("library", "list", library, "--json").stdout)["models"]
+        self.assertEqual([model["name"] for model in models], ["статуя", "像 50%41"])
+        text = self.semigeo("library", "list", library).stdout
+        self.assertIn("像 50%41: ", text)
+        self.assertIn("статуя: ", text)
 
 
 if __name__ == "__main__":

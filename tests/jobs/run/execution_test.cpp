@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
 
 #include "tests/jobs/run/fake_runner.hpp"
@@ -256,6 +257,40 @@ TEST_F(ExecutionTest, WorkIsCounted) {
   };
   EXPECT_EQ(run(), States{kDone});
   EXPECT_EQ(vertex_levels_, 42);
+}
+
+// Or each of thousands of scans would fail over the same full disk.
+TEST_F(ExecutionTest, APlaceThatCannotBeWrittenStopsTheRunAfterTheJobsUnderWay) {
+  for (const int code : {ENOSPC, EDQUOT, EIO, EROFS, ENOENT}) {
+    SCOPED_TRACE(code);
+    plan_.clear();
+    runner_ = {};
+    for (const char* name : {"a", "b", "c", "d", "e"}) add(name);
+    options_.total.cores = 3;
+    runner_.on_start = [&](const JobStart& job) {
+      const std::string& name = job.planned->job.name;
+      name == "c" ? runner_.answer(job.number, kDone)
+                  : runner_.refuse(job.number, code, name + ": cannot be written");
+    };
+    EXPECT_EQ(run(), (States{kNotRun, kNotRun, kDone, kNotRun, kNotRun}));
+    EXPECT_EQ(runner_.started, (Names{"a", "b", "c"}));
+    EXPECT_TRUE(has_said("stopping: a: cannot be written\n")) << said_;
+    EXPECT_FALSE(has_said("failed")) << said_;
+    EXPECT_FALSE(has_said("stopping: b")) << said_;
+    EXPECT_EQ(outcomes_[0].write_error, code);
+    EXPECT_EQ(outcomes_[0].error, "a: cannot be written");
+    EXPECT_EQ(outcomes_[1].error, "");  // one sentence is enough
+  }
+}
+
+TEST_F(ExecutionTest, AFileThatAloneCannotBeWrittenIsOneFailure) {
+  for (const char* name : {"a", "b"}) add(name);
+  runner_.on_start = [&](const JobStart& job) {
+    job.number == 0 ? runner_.refuse(job.number, EFBIG, "a: too large")
+                    : runner_.answer(job.number, kDone);
+  };
+  EXPECT_EQ(run(), (States{kFailed, kDone}));
+  EXPECT_TRUE(has_said("failed: a: too large"));
 }
 
 }  // namespace

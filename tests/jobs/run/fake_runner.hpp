@@ -59,6 +59,11 @@ class FakeRunner : public jobs::Runner {
     answered.outcome.threads = 1;
     events.emplace_back(std::move(answered));
   }
+  /// The output of a job could not be written.
+  void refuse(std::size_t job, int code, const std::string& error) {
+    answer(job, jobs::JobState::kFailed, error);
+    std::get<jobs::JobAnswered>(events.back()).outcome.write_error = code;
+  }
   void lose(std::size_t job, bool wanted = false) {
     events.emplace_back(jobs::JobLost{.number = job,
                                       .wanted = wanted,

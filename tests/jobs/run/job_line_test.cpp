@@ -209,7 +209,9 @@ TEST(JobLineTest, EveryFieldOfAResultArrives) {
                            .peak_bytes = 1e12 + 1};
     const std::string line = to_line(sent);
     EXPECT_EQ(line.find('\n'), std::string::npos);
-    const auto [kind, worked, error, read, cpu_seconds, peak_bytes] = job_reply_from(line);
+    const auto [kind, worked, error, read, cpu_seconds, peak_bytes, write_error] =
+        job_reply_from(line);
+    EXPECT_EQ(write_error, 0);
     EXPECT_EQ(kind, JobReply::Kind::kDone);
     EXPECT_EQ(worked, 123);
     EXPECT_EQ(error, "");
@@ -265,7 +267,9 @@ TEST(JobLineTest, AFailureSaysWhyWhateverTheReason) {
                                                 .error = name,
                                                 .result = {},
                                                 .cpu_seconds = 0.5,
-                                                .peak_bytes = 4096}));
+                                                .peak_bytes = 4096,
+                                                .write_error = ENOSPC}));
+  EXPECT_EQ(read.write_error, ENOSPC);
   EXPECT_EQ(read.kind, JobReply::Kind::kFailed);
   EXPECT_EQ(read.worked, 7);
   EXPECT_EQ(read.error, name);

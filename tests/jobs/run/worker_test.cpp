@@ -4,6 +4,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -106,6 +107,24 @@ TEST_F(WorkerTest, DoesOneJobAfterTheOther) {
   ASSERT_TRUE(ended_.has_value());
   EXPECT_EQ(ended_->exit_code, 0);
   EXPECT_EQ(contents(folder_ / "worker.log"), "");
+}
+
+TEST_F(WorkerTest, TheNumberOfASystemErrorIsAnswered) {
+  const auto worker = start();
+  const JobRequest lost = request("a.obj");
+  fs::remove_all(lost.job.output.parent_path());
+  const auto answer = reply_to(worker, lost);
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_EQ(answer->kind, JobReply::Kind::kFailed);
+  EXPECT_EQ(answer->write_error, ENOENT);
+  EXPECT_TRUE(answer->error.starts_with(lost.job.output.string() + ": ")) << answer->error;
+  // What is wrong with a scan is no error of the archive.
+  JobRequest gone = request("b.obj");
+  fs::remove(gone.job.input);
+  const auto refused = reply_to(worker, gone);
+  ASSERT_TRUE(refused.has_value());
+  EXPECT_EQ(refused->kind, JobReply::Kind::kFailed);
+  EXPECT_EQ(refused->write_error, 0);
 }
 
 TEST_F(WorkerTest, WhatAJobThrowsIsItsFailure) {
