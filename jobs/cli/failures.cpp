@@ -74,7 +74,10 @@ bool print_failures(const std::vector<Failure>& failures, bool told) {
     others -= group.count;
     ++shown;
   }
-  if (others > 0) print("failed: ", others, " more, for ", groups.size() - shown, " reasons\n");
+  const std::size_t reasons = groups.size() - shown;
+  if (others > 0)
+    print("failed: ", others, " more, for ",
+          reasons == 1 ? "another reason" : std::to_string(reasons) + " other reasons", "\n");
   return true;
 }
 

@@ -46,7 +46,7 @@ TEST(FailuresTest, ManyAreCountedByReason) {
   EXPECT_EQ(printed(failures),
             "failed, 4000 times: a: is empty; export it\nfailed: b: its job crashed (signal 11)\n");
   EXPECT_EQ(printed(failures, true),
-            "failed, 4000 times: a: is empty; export it\nfailed: 1 more, for 1 reasons\n");
+            "failed, 4000 times: a: is empty; export it\nfailed: 1 more, for another reason\n");
 }
 
 TEST(FailuresTest, OnlyTheMostFrequentReasonsAreNamed) {
@@ -56,7 +56,7 @@ TEST(FailuresTest, OnlyTheMostFrequentReasonsAreNamed) {
                     std::string("x: problem ") + reason);
   EXPECT_EQ(printed(failures),
             "failed, 26 times: x: problem z\nfailed, 25 times: x: problem y\n"
-            "failed, 24 times: x: problem x\nfailed: 276 more, for 23 reasons\n");
+            "failed, 24 times: x: problem x\nfailed: 276 more, for 23 other reasons\n");
 }
 
 TEST(FailuresTest, LongSentencesAreCutBetweenCharacters) {
