@@ -22,6 +22,8 @@ struct Part {
   double radius = 0;                                 ///< Median distance from the middle.
   double volume = 0;  ///< Six times the enclosed volume. It means nothing for an open part.
   bool closed = true;
+  std::int64_t along = 0;    ///< Number of faces that look along the normals of their corners.
+  std::int64_t against = 0;  ///< Number of faces that look the other way.
 };
 
 double median(std::vector<double>& values) {
@@ -58,7 +60,7 @@ void find_middles(const Surface& surface, std::vector<Part>& parts) {
 
 /// Measures all parts. The volume is that of the part with its far points drawn in towards the
 /// middle: one vertex far out, on the wrong side, may otherwise outweigh all others.
-std::vector<Part> measure(const Surface& surface) {
+std::vector<Part> measure(const Surface& surface, std::span<const Eigen::Vector3f> normals) {
   std::vector<Part> parts(surface.part_count);
   find_middles(surface, parts);
   for (std::int32_t f = 0; f < surface.face_count(); ++f) {
@@ -73,6 +75,11 @@ std::vector<Part> measure(const Surface& surface) {
       if (distance > kFar * part.radius) p[i] *= kFar * part.radius / distance;
     }
     part.volume += p[0].dot(p[1].cross(p[2]));
+    if (normals.empty()) continue;
+    const Eigen::Vector3f normal = normals[t[0]] + normals[t[1]] + normals[t[2]];
+    const double side = normal.cast<double>().dot((p[1] - p[0]).cross(p[2] - p[0]));
+    part.along += side > 0;
+    part.against += side < 0;
   }
   return parts;
 }
@@ -170,18 +177,18 @@ std::vector<bool> enclosed(const Surface& surface, const std::vector<Part>& part
 
 }  // namespace
 
-std::int64_t turn_inverted_parts(Surface& surface) {
-  const std::vector<Part> parts = measure(surface);
+std::int64_t turn_inverted_parts(Surface& surface, std::span<const Eigen::Vector3f> normals) {
+  const std::vector<Part> parts = measure(surface, normals);
   std::vector<bool> turned(parts.size(), false);
   std::int64_t count = 0;
   for (std::size_t p = 0; p < parts.size(); ++p) {
-    turned[p] = parts[p].closed && parts[p].volume < 0;
+    turned[p] = parts[p].closed ? parts[p].volume < 0 : parts[p].against > parts[p].along;
     count += turned[p];
   }
   if (count == 0) return 0;
   const std::vector<bool> inside = enclosed(surface, parts, turned);
   for (std::size_t p = 0; p < parts.size(); ++p)
-    if (inside[p]) {
+    if (inside[p] && parts[p].closed) {
       turned[p] = false;
       --count;
     }
@@ -195,7 +202,7 @@ std::int64_t turn_inverted_parts(Surface& surface) {
     std::swap(surface.twin[halfedge(f, 0)], surface.twin[halfedge(f, 2)]);
     for (int i = 0; i < 3; ++i) {
       std::int32_t& twin = surface.twin[halfedge(f, i)];
-      twin = renamed(twin);  // of the same part: closed, and turned as well
+      twin = renamed(twin);  // of the same part, which is turned as a whole; kNone stays
     }
   }
   choose_outgoing(surface, surface.vertex_count());

@@ -65,6 +65,15 @@ double step_of(const std::vector<Eigen::Vector3d>& points,
   return std::nextafter(*high, HUGE_VALF) - *high;
 }
 
+/// Returns the sums of the normals of points that were welded.
+std::vector<Eigen::Vector3f> sums_of(const std::vector<Eigen::Vector3f>& normals,
+                                     const std::vector<std::int32_t>& new_index,
+                                     std::size_t count) {
+  std::vector<Eigen::Vector3f> sums(count, Eigen::Vector3f::Zero());
+  for (std::size_t v = 0; v < normals.size(); ++v) sums[new_index[v]] += normals[v];
+  return sums;
+}
+
 /// Tells whether there is nothing to repair. No edge has more than two faces; the two faces of an
 /// edge run along it in opposite directions; and they do not have the same three vertices.
 bool is_clean(const EdgeGroups& groups, const std::vector<Triangle>& triangles) {
@@ -80,7 +89,7 @@ bool is_clean(const EdgeGroups& groups, const std::vector<Triangle>& triangles) 
 }
 
 /// Copies vertices that have several fans of faces. Each fan but the first gets a copy.
-std::int64_t split_fans(Surface& surface) {
+std::int64_t split_fans(Surface& surface, std::vector<Eigen::Vector3f>& normals) {
   std::vector<bool> seen(4 * surface.triangles.size(), false);
   std::vector<bool> has_fan(surface.points.size(), false);
   std::int64_t copies = 0;
@@ -92,6 +101,7 @@ std::int64_t split_fans(Surface& surface) {
       std::int32_t vertex = surface.origin(start);
       if (has_fan[vertex]) {
         surface.points.push_back(surface.points[vertex]);
+        if (!normals.empty()) normals.push_back(normals[vertex]);
         vertex = static_cast<std::int32_t>(surface.points.size()) - 1;
         ++copies;
       } else {
@@ -113,7 +123,7 @@ std::int64_t split_fans(Surface& surface) {
   return copies;
 }
 
-std::int64_t drop_isolated(Surface& surface) {
+std::int64_t drop_isolated(Surface& surface, std::vector<Eigen::Vector3f>& normals) {
   std::vector<std::int32_t> new_index(surface.points.size(), kNone);
   for (const Triangle& t : surface.triangles)
     for (const std::int32_t v : t) new_index[v] = 0;
@@ -121,6 +131,7 @@ std::int64_t drop_isolated(Surface& surface) {
   for (std::size_t v = 0; v < new_index.size(); ++v) {
     if (new_index[v] == kNone) continue;
     surface.points[kept] = surface.points[v];
+    if (!normals.empty()) normals[kept] = normals[v];
     new_index[v] = kept++;
   }
   const std::size_t dropped = surface.points.size() - kept;
@@ -148,7 +159,8 @@ std::vector<std::int32_t> conflicting_faces(const Surface& surface) {
 }
 
 /// Joins faces where more than two may meet in an edge, and counts what that takes.
-void pair_and_split(Faces faces, Surface& surface, SurfaceRepairs& repairs) {
+void pair_and_split(Faces faces, Surface& surface, std::vector<Eigen::Vector3f>& normals,
+                    SurfaceRepairs& repairs) {
   const std::int64_t vertex_count = std::ssize(surface.points);
   repairs.duplicate_faces = drop_duplicates(faces, vertex_count);
   PairedEdges paired;
@@ -162,7 +174,7 @@ void pair_and_split(Faces faces, Surface& surface, SurfaceRepairs& repairs) {
   repairs.nonmanifold_edges = paired.nonmanifold_edges;
   surface.triangles = std::move(faces.places);
   surface.twin = std::move(paired.twin);
-  repairs.split_vertices = split_fans(surface);
+  repairs.split_vertices = split_fans(surface, normals);
   for (auto alone = conflicting_faces(surface); !alone.empty();
        alone = conflicting_faces(surface)) {
     for (const std::int32_t f : alone)
@@ -172,7 +184,7 @@ void pair_and_split(Faces faces, Surface& surface, SurfaceRepairs& repairs) {
         twin = kNone;
       }
     repairs.nonmanifold_edges += std::ssize(alone);
-    repairs.split_vertices += split_fans(surface);
+    repairs.split_vertices += split_fans(surface, normals);
   }
 }
 
@@ -193,6 +205,7 @@ BuiltSurface build_surface(TriangleMesh&& mesh, const Welding& welding) {
                          : kRoundedTwice * rounding_of(mesh.points, used, built.coordinate_step);
   }
   std::vector<Eigen::Vector3d>().swap(mesh.points);
+  std::vector<Eigen::Vector3f> normals = std::move(mesh.normals);
 
   Faces faces{std::move(mesh.triangles), {}};
   {
@@ -200,6 +213,7 @@ BuiltSurface build_surface(TriangleMesh&& mesh, const Welding& welding) {
     const auto new_index = weld_equal(surface.points);
     repairs.welded_vertices = before - std::ssize(surface.points);
     if (repairs.welded_vertices > 0) faces.own = faces.places;
+    if (!normals.empty()) normals = sums_of(normals, new_index, surface.points.size());
     for (Triangle& t : faces.places)
       for (std::int32_t& v : t) v = new_index[v];
   }
@@ -215,15 +229,15 @@ BuiltSurface build_surface(TriangleMesh&& mesh, const Welding& welding) {
   if (is_clean(groups, faces.places)) {
     surface.triangles = std::move(faces.places);
     surface.twin = pair_twins(groups, surface.triangles.size());
-    repairs.split_vertices = split_fans(surface);  // renames vertices only
+    repairs.split_vertices = split_fans(surface, normals);  // renames vertices only
   } else {
     groups = {};
-    pair_and_split(std::move(faces), surface, repairs);
+    pair_and_split(std::move(faces), surface, normals, repairs);
   }
   surface.triangles.shrink_to_fit();
-  repairs.isolated_vertices = drop_isolated(surface) - repairs.gap_vertices;
+  repairs.isolated_vertices = drop_isolated(surface, normals) - repairs.gap_vertices;
   connect(surface);
-  repairs.turned_parts = turn_inverted_parts(surface);
+  repairs.turned_parts = turn_inverted_parts(surface, normals);
   return built;
 }
 

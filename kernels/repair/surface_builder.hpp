@@ -18,7 +18,7 @@ struct SurfaceRepairs {
   std::int64_t duplicate_faces = 0;    ///< Dropped: the same as an earlier face, or its back.
   std::int64_t flipped_faces = 0;      ///< Turned over to agree with their neighbours.
   std::int64_t nonmanifold_edges = 0;  ///< Cut apart: more than two faces meet there, or a twist.
-  std::int64_t turned_parts = 0;       ///< Closed parts that were inside out.
+  std::int64_t turned_parts = 0;       ///< Parts that were inside out.
   std::int64_t split_vertices = 0;     ///< Copies made where fans of faces touch in one vertex.
   std::int64_t isolated_vertices = 0;  ///< Dropped: no face left.
 
@@ -48,7 +48,8 @@ struct BuiltSurface {
 /// - Only degenerate and duplicate faces are dropped. Where more than two faces meet in an edge, or
 ///   fans touch in a vertex, surfaces are cut apart (see `pair_edges`). Solids that touch in a face
 ///   keep it both.
-/// - Neighbours are oriented alike, and closed parts outwards (see `turn_inverted_parts`).
+/// - Neighbours are oriented alike, closed parts outwards, and open ones as the normals of the mesh
+///   say, if it has any (see `turn_inverted_parts`).
 ///
 /// Vertices and faces keep their order; copies of split vertices come last. The mesh is consumed,
 /// to save memory. Indices must be valid and points finite. A result without faces is no error. The

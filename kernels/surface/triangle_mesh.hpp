@@ -12,6 +12,9 @@ namespace semigeo::kernels {
 struct TriangleMesh {
   std::vector<Eigen::Vector3d> points;  ///< (N, 3) Points, in the scan's length unit.
   std::vector<std::array<std::int32_t, 3>> triangles;  ///< (F, 3) Indices into the points.
+  /// (N, 3) Normals of the points, of any length, or empty. They tell only which side of an open
+  /// surface is outside.
+  std::vector<Eigen::Vector3f> normals = {};
 };
 
 }  // namespace semigeo::kernels

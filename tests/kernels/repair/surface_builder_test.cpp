@@ -346,6 +346,43 @@ TEST(SurfaceBuilderTest, ClosedPartsFaceOutwards) {
   EXPECT_EQ(build_surface(std::move(far_out)).repairs.turned_parts, 1);
 }
 
+// The majority of an open part's triangles may face inwards; its normals tell.
+TEST(SurfaceBuilderTest, OpenPartsFollowTheNormalsOfTheMesh) {
+  for (const bool inwards : {false, true}) {
+    TriangleMesh mesh = shapes::hemisphere(3);
+    TriangleMesh other = shapes::hemisphere(2);  // of the other orientation
+    for (auto& p : other.points) p.x() += 5;
+    for (auto& t : other.triangles) std::swap(t[1], t[2]);
+    const std::size_t first = mesh.points.size();
+    append(mesh, other);
+    for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+      const Eigen::Vector3d centre(v < first ? 0 : 5, 0, 0);
+      mesh.normals.emplace_back(((mesh.points[v] - centre) * (inwards ? -2 : 2)).cast<float>());
+    }
+    const auto built = build_surface(std::move(mesh));
+    EXPECT_EQ(built.repairs.turned_parts, 1);
+    EXPECT_EQ(fault_of(built.surface), "");
+    for (const auto& t : built.surface.triangles) {
+      const auto& p = built.surface.points;
+      const Eigen::Vector3f centre(p[t[0]].x() > 2 ? 5 : 0, 0, 0);
+      const float out = (p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]).dot(p[t[0]] - centre);
+      EXPECT_EQ(out < 0, inwards);
+    }
+  }
+}
+
+// Split and welded vertices keep their normals, vertices without faces do not count.
+TEST(SurfaceBuilderTest, NormalsFollowTheirVertices) {
+  TriangleMesh mesh{{{9, 9, 9}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {-1, 0, 0}, {0, -1, 0}},
+                    {{1, 2, 3}, {4, 5, 6}}};
+  mesh.normals.assign(7, {0, 0, -1});
+  mesh.normals[0] = {0, 0, 9};
+  const auto built = build_surface(std::move(mesh));
+  EXPECT_EQ(built.repairs.welded_vertices, 1);
+  EXPECT_EQ(built.repairs.split_vertices, 1);
+  EXPECT_EQ(built.repairs.turned_parts, 2);
+}
+
 TEST(SurfaceBuilderTest, CavitiesKeepFacingTheOtherWay) {
   TriangleMesh mesh = shapes::icosphere(3);
   TriangleMesh cavity = shapes::icosphere(2, 0.3);
