@@ -7,7 +7,7 @@
 
 #include "bench/peers/jets.hpp"
 #include "bench/peers/neighbourhoods.hpp"
-#include "bench/peers/range_grid.hpp"
+#include "io/scans/scan_reader.hpp"
 #include "jobs/stages/evolving_surface.hpp"
 
 namespace semigeo::peers {
@@ -17,7 +17,7 @@ constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 /// Reads a view and moves it into the frame of the object.
 Subject read_view(const std::filesystem::path& folder, const RangeView& view) {
-  kernels::TriangleMesh mesh = triangulated(read_range_grid(folder / (view.name + ".ply.gz")));
+  kernels::TriangleMesh mesh = io::read_scan(folder / (view.name + ".ply.gz")).mesh;
   const Eigen::Isometry3d to_object = view.pose.inverse();
   for (Eigen::Vector3d& p : mesh.points) p = to_object * p;
   return make_subject(view.name, std::move(mesh));

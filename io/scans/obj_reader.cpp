@@ -92,8 +92,8 @@ class ObjBody {
   std::vector<std::int64_t> corners_;
 };
 
-Scan read_obj(ByteSource& source, const ScanLimits& limits) {
-  ScanBuilder builder(source, limits);
+Scan read_obj(ByteSource& source, const ScanOptions& options) {
+  ScanBuilder builder(source, options);
   builder.set_index_base(1);
   ObjBody(source, builder).read();
   return builder.finish("OBJ");

@@ -227,9 +227,9 @@ class OffBinary {
   std::vector<std::int64_t> corners_;
 };
 
-Scan read_off(ByteSource& source, const ScanLimits& limits) {
+Scan read_off(ByteSource& source, const ScanOptions& options) {
   TextScanner scanner(source, {.hash_comments = true});
-  ScanBuilder builder(source, limits);
+  ScanBuilder builder(source, options);
   const OffHeader header = read_header(scanner);
   scanner.release();
   if (header.binary) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <string_view>
 #include <utility>
 
@@ -81,11 +82,23 @@ PlyProperty read_property(TextScanner& scanner) {
   return property;
 }
 
+/// Reads what follows `obj_info`. Only the size of a range grid means something.
+void read_info(TextScanner& scanner, PlyHeader& header) {
+  const std::string_view name = scanner.word();
+  const bool is_rows = name == "num_rows";
+  if (!is_rows && name != "num_cols") return;
+  const std::string_view text = scanner.word();
+  std::int64_t value = 0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (status == std::errc{} && end == text.data() + text.size())
+    (is_rows ? header.grid_rows : header.grid_columns) = value;
+}
+
 /// Reads one line. Returns false if it was the last one.
 bool read_line(TextScanner& scanner, PlyHeader& header, bool& encoding_known) {
   const std::string keyword(scanner.word());
   if (keyword == "end_header") return false;
-  if (keyword == "comment" || keyword == "obj_info") return true;
+  if (keyword == "comment") return true;
   if (keyword == "format") {
     header.encoding = read_encoding(scanner);
     encoding_known = true;
@@ -94,6 +107,8 @@ bool read_line(TextScanner& scanner, PlyHeader& header, bool& encoding_known) {
   } else if (keyword == "property") {
     if (header.elements.empty()) scanner.fail("a property stands before any element", kBadHeader);
     header.elements.back().properties.push_back(read_property(scanner));
+  } else if (keyword == "obj_info") {
+    read_info(scanner, header);
   } else {
     ++header.unknown_lines;
   }

@@ -59,6 +59,8 @@ struct PlyHeader {
   std::vector<PlyElement> elements;
   std::int64_t lines = 0;          ///< Number of lines of the header.
   std::int64_t unknown_lines = 0;  ///< Number of lines that begin with no keyword of PLY.
+  /// Size of the element `range_grid`, from `obj_info num_rows` and `obj_info num_cols`.
+  std::optional<std::int64_t> grid_rows, grid_columns;
 };
 
 /// Reads the header and leaves the source behind its last line's end. Lines that begin with no

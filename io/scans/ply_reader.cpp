@@ -46,6 +46,38 @@ const PlyProperty& find_index_list(const PlyElement& element, const ScanBuilder&
                kBadHeader);
 }
 
+/// Returns the number of vertices that the header promises.
+std::int64_t vertex_count(const PlyHeader& header) {
+  for (const PlyElement& element : header.elements)
+    if (element.name == "vertex") return element.count;
+  return 0;
+}
+
+/// Returns the scanner's grid if the scan has no faces, or nullptr. Throws Error if the header does
+/// not say what size the grid has.
+const PlyElement* find_grid(const PlyHeader& header, const ScanBuilder& builder) {
+  const PlyElement* grid = nullptr;
+  for (const PlyElement& element : header.elements) {
+    if (element.count == 0) continue;
+    if (element.name == "face" || element.name == "tristrips") return nullptr;
+    if (element.name == "range_grid") grid = &element;
+  }
+  if (grid == nullptr) return nullptr;
+  if (!header.grid_rows || !header.grid_columns)
+    builder.fail(declaration(*grid),
+                 "the size of range_grid is unknown: the lines 'obj_info num_rows' and 'obj_info "
+                 "num_cols' are missing",
+                 kBadHeader);
+  const std::int64_t rows = *header.grid_rows;
+  const std::int64_t columns = *header.grid_columns;
+  if (rows <= 0 || columns <= 0 || grid->count / columns != rows || grid->count % columns != 0)
+    builder.fail(declaration(*grid),
+                 "range_grid has " + std::to_string(grid->count) + " cells, but num_rows is " +
+                     std::to_string(rows) + " and num_cols is " + std::to_string(columns),
+                 kBadHeader);
+  return grid;
+}
+
 /// Makes the triangles of a strip: each corner with the two before it, every second time in the
 /// opposite order. -1 starts a new strip. Repeated corners, which only steer the strip, make no
 /// face.
@@ -75,7 +107,10 @@ template <typename Decoder>
 class PlyBody {
  public:
   PlyBody(ByteSource& source, const PlyHeader& header, ScanBuilder& builder)
-      : source_(source), header_(header), builder_(builder), decoder_(source, header, builder) {}
+      : header_(header),
+        builder_(builder),
+        decoder_(source, header, builder),
+        grid_element_(find_grid(header, builder)) {}
 
   void read() {
     for (const PlyElement& element : header_.elements) {
@@ -85,10 +120,13 @@ class PlyBody {
         read_faces(element);
       } else if (element.name == "tristrips" && element.count > 0) {
         read_strips(element);
+      } else if (&element == grid_element_) {
+        read_grid(element);
       } else {
         skip(element);
       }
     }
+    if (grid_element_ != nullptr) builder_.add_grid(std::move(grid_), declaration(*grid_element_));
   }
 
  private:
@@ -144,6 +182,30 @@ class PlyBody {
     });
   }
 
+  /// Reads the rays of a scanner's grid: each is a list of one vertex, or of none.
+  void read_grid(const PlyElement& element) {
+    grid_.rows = *header_.grid_rows;
+    grid_.columns = *header_.grid_columns;
+    const std::int64_t vertices = vertex_count(header_);
+    read_lists(element, [&](const PlyProperty& list, std::int64_t length) {
+      if (length > 1)
+        builder_.fail(decoder_.place(),
+                      "a cell of the grid has " + std::to_string(length) + " vertices, not 0 or 1",
+                      "export the scan again");
+      std::int32_t cell = -1;
+      decoder_.items(list, length, [&](std::int64_t vertex) {
+        if (vertex < 0 || vertex >= vertices)
+          builder_.fail(decoder_.place(),
+                        "a cell of the grid refers to vertex " + std::to_string(vertex) +
+                            ", but there are only " + std::to_string(vertices) +
+                            " vertices, numbered from 0",
+                        "copy the file again from its source or export it again");
+        cell = static_cast<std::int32_t>(vertex);
+      });
+      grid_.cells.push_back(cell);
+    });
+  }
+
   void skip(const PlyElement& element) {
     if (element.properties.empty()) return;  // its records have no bytes, however many there are
     for (std::int64_t i = 0; i < element.count; ++i) {
@@ -153,10 +215,11 @@ class PlyBody {
     }
   }
 
-  ByteSource& source_;
   const PlyHeader& header_;
   ScanBuilder& builder_;
   Decoder decoder_;
+  const PlyElement* const grid_element_;
+  kernels::RangeGrid grid_;
 };
 
 /// Tells the builder what the header promises. The builder must know it before the first element is
@@ -181,9 +244,9 @@ void announce(const PlyHeader& header, ScanBuilder& builder) {
                  kBadHeader);
 }
 
-Scan read_ply(ByteSource& source, const ScanLimits& limits) {
+Scan read_ply(ByteSource& source, const ScanOptions& options) {
   const PlyHeader header = read_ply_header(source);
-  ScanBuilder builder(source, limits);
+  ScanBuilder builder(source, options);
   announce(header, builder);
   builder.add_unknown_header_lines(header.unknown_lines);
   if (header.encoding == PlyHeader::Encoding::kAscii) {

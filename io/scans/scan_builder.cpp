@@ -14,10 +14,10 @@ constexpr const char* kExportAgain = "copy the file again from its source or exp
 
 }  // namespace
 
-ScanBuilder::ScanBuilder(const ByteSource& source, const ScanLimits& limits)
-    : source_(source), limits_(limits) {
-  limits_.max_vertices = std::min(limits_.max_vertices, kMaxIndexable);
-  index_limit_ = limits_.max_vertices;
+ScanBuilder::ScanBuilder(const ByteSource& source, const ScanOptions& options)
+    : source_(source), options_(options) {
+  options_.max_vertices = std::min(options_.max_vertices, kMaxIndexable);
+  index_limit_ = options_.max_vertices;
 }
 
 void ScanBuilder::promise_points(std::int64_t count, std::int64_t bytes_each, Place place) {
@@ -25,15 +25,16 @@ void ScanBuilder::promise_points(std::int64_t count, std::int64_t bytes_each, Pl
   index_limit_known_ = true;
   const std::optional<std::int64_t> left = source_.bytes_left();
   const bool possible = !left || count <= *left / bytes_each;
-  if (possible && count > limits_.max_vertices) fail_limit("vertices", limits_.max_vertices, place);
+  if (possible && count > options_.max_vertices)
+    fail_limit("vertices", options_.max_vertices, place);
   if (left && possible) scan_.mesh.points.reserve(static_cast<std::size_t>(count));
 }
 
 void ScanBuilder::promise_faces(std::int64_t count, std::int64_t bytes_each, Place place) {
   const std::optional<std::int64_t> left = source_.bytes_left();
   const bool possible = !left || count <= *left / bytes_each;
-  if (possible && count > limits_.max_triangles)
-    fail_limit("triangles", limits_.max_triangles, place);
+  if (possible && count > options_.max_triangles)
+    fail_limit("triangles", options_.max_triangles, place);
   if (left && possible) scan_.mesh.triangles.reserve(static_cast<std::size_t>(count));
 }
 
@@ -45,8 +46,8 @@ void ScanBuilder::add_face(std::span<const std::int64_t> corners, Place place) {
   }
   const auto count = static_cast<std::int64_t>(corners.size());
   triangle_count_ += count - 2;
-  if (triangle_count_ > limits_.max_triangles)
-    fail_limit("triangles", limits_.max_triangles, place);
+  if (triangle_count_ > options_.max_triangles)
+    fail_limit("triangles", options_.max_triangles, place);
   if (count == 3) {
     scan_.mesh.triangles.push_back({static_cast<std::int32_t>(corners[0]),
                                     static_cast<std::int32_t>(corners[1]),
@@ -78,9 +79,31 @@ void ScanBuilder::add_bad_point(double x, double y, double z, Place place) {
   add_point(0, 0, 0, place);
 }
 
-void ScanBuilder::drop_bad_points() {
+std::vector<bool> ScanBuilder::bad_points() const {
   std::vector<bool> bad(scan_.mesh.points.size(), false);
   for (const std::int64_t v : bad_points_) bad[v] = true;
+  return bad;
+}
+
+void ScanBuilder::add_grid(kernels::RangeGrid grid, Place place) {
+  if (!bad_points_.empty()) {
+    const std::vector<bool> bad = bad_points();
+    for (std::int32_t& cell : grid.cells)
+      if (cell >= 0 && bad[cell]) cell = -1;
+  }
+  const kernels::GridTriangles made =
+      kernels::triangulate_grid(grid, scan_.mesh.points, options_.depth_jump);
+  triangle_count_ += std::ssize(made.triangles);
+  if (triangle_count_ > options_.max_triangles)
+    fail_limit("triangles", options_.max_triangles, place);
+  scan_.mesh.triangles.insert(scan_.mesh.triangles.end(), made.triangles.begin(),
+                              made.triangles.end());
+  scan_.depth_jump_triangles += made.jumps;
+  scan_.eye = ++grid_count_ == 1 ? grid.eye : std::nullopt;
+}
+
+void ScanBuilder::drop_bad_points() {
+  const std::vector<bool> bad = bad_points();
   scan_.bad_vertices = std::ssize(bad_points_);
   scan_.faces_of_bad_vertices = static_cast<std::int64_t>(std::erase_if(
       scan_.mesh.triangles, [&](const auto& t) { return bad[t[0]] || bad[t[1]] || bad[t[2]]; }));
@@ -126,7 +149,7 @@ void ScanBuilder::fail_coordinate(const BadPoint& point) const {
       fail(point.place, std::string("the ") + name + " coordinate is not a finite number",
            "remove or repair this vertex");
   for (const auto& [name, value] : {std::pair{"x", point.x}, {"y", point.y}, {"z", point.z}})
-    if (std::abs(value) > limits_.max_coordinate)
+    if (std::abs(value) > options_.max_coordinate)
       fail(point.place, std::string("the ") + name + " coordinate is implausibly large",
            kExportAgain);
   fail(point.place, "a coordinate is out of range", kExportAgain);
@@ -153,13 +176,16 @@ void ScanBuilder::fail_limit(std::string_view what, std::int64_t limit, Place pl
 
 void ScanBuilder::fail_without_faces() const {
   const std::string points = "it has " + std::to_string(point_count()) + " points but ";
+  if (grid_count_ > 0)
+    throw Error(source_.path(), "",
+                points + "no three of them are neighbours in its grid at about the same depth",
+                "export the scan again");
   if (scan_.faces_skipped > 0)
     throw Error(
         source_.path(), "",
         points + "none of its " + std::to_string(scan_.faces_skipped) + " faces has three corners",
         "export it with triangles");
-  throw Error(source_.path(), "", points + "no faces",
-              "semigeo needs a surface: mesh it first (for example by Poisson reconstruction)");
+  throw Error(source_.path(), "", points + "no faces", kNeedsSurface);
 }
 
 }  // namespace semigeo::io

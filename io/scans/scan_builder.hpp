@@ -12,6 +12,7 @@
 #include "io/scans/place.hpp"
 #include "io/scans/polygon_triangulator.hpp"
 #include "io/scans/scan_reader.hpp"
+#include "kernels/repair/range_grid.hpp"
 
 namespace semigeo::io {
 
@@ -20,10 +21,15 @@ namespace semigeo::io {
 /// the source and the place that was passed in.
 class ScanBuilder {
  public:
+  /// Says what can be done about a file that holds points only.
+  static constexpr const char* kNeedsSurface =
+      "semigeo needs a surface: export it as the scanner's grid (an organised PCD, a PTX, a PLY "
+      "with "
+      "range_grid), or mesh it first (for example by Poisson reconstruction)";
   /// The largest number of corners that a face may have.
   static constexpr std::int64_t kMaxCorners = 65'535;
 
-  ScanBuilder(const ByteSource& source, const ScanLimits& limits);
+  ScanBuilder(const ByteSource& source, const ScanOptions& options);
 
   /// Sets what counts in messages as the first vertex: 1 for OBJ, otherwise 0.
   void set_index_base(std::int64_t base) { index_base_ = base; }
@@ -50,10 +56,11 @@ class ScanBuilder {
   /// Adds a vertex. One with a coordinate that is not finite or too large is noted: `finish` drops
   /// it, and with it its faces. Throws Error if there are too many vertices.
   void add_point(double x, double y, double z, Place place) {
-    const double limit = limits_.max_coordinate;  // the comparisons are false for NaN
+    const double limit = options_.max_coordinate;  // the comparisons are false for NaN
     if (!(std::abs(x) <= limit && std::abs(y) <= limit && std::abs(z) <= limit))
       return add_bad_point(x, y, z, place);
-    if (point_count() >= limits_.max_vertices) fail_limit("vertices", limits_.max_vertices, place);
+    if (point_count() >= options_.max_vertices)
+      fail_limit("vertices", options_.max_vertices, place);
     scan_.mesh.points.emplace_back(x, y, z);
   }
 
@@ -64,6 +71,10 @@ class ScanBuilder {
   /// Adds a face of up to kMaxCorners corners, zero-based. Corners may come later in the file,
   /// unless promise_points was called.
   void add_face(std::span<const std::int64_t> corners, Place place);
+
+  /// Adds the triangles between the rays of a grid whose points have been added. Rays that met a
+  /// point that cannot be used have met nothing.
+  void add_grid(kernels::RangeGrid grid, Place place);
 
   /// Does what had to wait for the last vertex and returns the scan. Throws Error if it has no
   /// vertices or no faces, or none without bad vertices.
@@ -88,6 +99,7 @@ class ScanBuilder {
   void add_polygon(std::span<const std::int64_t> corners);
   void add_bad_point(double x, double y, double z, Place place);
   void drop_bad_points();
+  std::vector<bool> bad_points() const;
   [[noreturn]] void fail_coordinate(const BadPoint& point) const;
   [[noreturn]] void fail_corner_count(Place place) const;
   [[noreturn]] void fail_index(std::int64_t corner, Place place) const;
@@ -95,12 +107,13 @@ class ScanBuilder {
   [[noreturn]] void fail_without_faces() const;
 
   const ByteSource& source_;
-  ScanLimits limits_;
+  ScanOptions options_;
   Scan scan_;
   std::int64_t index_base_ = 0;
   std::int64_t index_limit_ = 0;
   bool index_limit_known_ = false;   // false: it is only the most that could be held
   std::int64_t triangle_count_ = 0;  // with those of the polygons that wait
+  std::int64_t grid_count_ = 0;
   std::int64_t largest_ahead_ = -1;  // largest index met before its vertex, and where first
   Place largest_ahead_place_;
   std::vector<std::int32_t> waiting_;     // polygons met before their vertices: size, then corners

@@ -14,7 +14,7 @@ struct ScanFormat {
   std::string_view extension;  ///< ".ply": the end of its files' names, in lower case.
   /// Reads a source at its start that holds at least one byte, and leaves it anywhere. Throws what
   /// read_scan throws.
-  Scan (*read)(ByteSource& source, const ScanLimits& limits);
+  Scan (*read)(ByteSource& source, const ScanOptions& options);
   /// Returns the variant of the format that the first bytes of a file show: "PLY ascii". Files of
   /// one variant need about the same time and memory for each byte.
   std::string (*variant)(std::string_view begin);
@@ -25,8 +25,11 @@ extern const ScanFormat kPlyFormat;
 extern const ScanFormat kObjFormat;
 extern const ScanFormat kOffFormat;
 extern const ScanFormat kStlFormat;
+extern const ScanFormat kPcdFormat;
+extern const ScanFormat kPtxFormat;
 
 /// The formats that the program reads, in the order in which messages name them.
-inline constexpr std::array kScanFormats = {&kPlyFormat, &kObjFormat, &kOffFormat, &kStlFormat};
+inline constexpr std::array kScanFormats = {&kPlyFormat, &kObjFormat, &kOffFormat,
+                                            &kStlFormat, &kPcdFormat, &kPtxFormat};
 
 }  // namespace semigeo::io

@@ -64,7 +64,7 @@ std::string scan_extensions(std::string_view separator, std::string_view last_se
   return text;
 }
 
-Scan read_scan(const std::filesystem::path& path, const ScanLimits& limits) {
+Scan read_scan(const std::filesystem::path& path, const ScanOptions& options) {
   ByteSource source(path);
   const ScanFormat* format = find_format(path);
   if (format == nullptr)
@@ -75,7 +75,7 @@ Scan read_scan(const std::filesystem::path& path, const ScanLimits& limits) {
   const std::optional<FileSignature> signature = file_signature(source.ahead());
   if (signature && signature->is_zeros) refuse_other_kind(source, *format, signature);
   try {
-    Scan scan = format->read(source, limits);
+    Scan scan = format->read(source, options);
     scan.bytes_after_end = source.drain();
     if (source.compressed()) scan.format += ", gzip";
     return scan;

@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "kernels/repair/range_grid.hpp"
 #include "kernels/surface/triangle_mesh.hpp"
 
 namespace semigeo::io {
@@ -22,11 +24,12 @@ std::string scan_variant(const std::filesystem::path& path);
 /// ".
 std::string scan_extensions(std::string_view separator, std::string_view last_separator);
 
-/// Limits what a scan may hold before it is refused.
-struct ScanLimits {
+/// Says what a scan may hold before it is refused, and how a grid of points becomes a surface.
+struct ScanOptions {
   std::int64_t max_vertices = 200'000'000;   ///< Indices are 32 bits wide, so never above 2^31 - 2.
   std::int64_t max_triangles = 400'000'000;  ///< Counted after cutting polygons into triangles.
   double max_coordinate = 1e30;              ///< Keeps areas and volumes within a double's range.
+  double depth_jump = kernels::kDepthJump;   ///< See `kernels::triangulate_grid`.
 };
 
 /// Holds the content of a scan file.
@@ -43,18 +46,24 @@ struct Scan {
   std::int64_t faces_of_bad_vertices = 0;  ///< Triangles that were dropped with them.
   std::int64_t surplus_values = 0;         ///< Values of a text that its header does not declare.
   std::int64_t unknown_header_lines = 0;   ///< Lines of a header that mean nothing.
+  /// Triangles of a range grid that would have joined surfaces at different depths.
+  std::int64_t depth_jump_triangles = 0;
+  /// The scanner's place, in the frame of the mesh. It is known only of scans that are one range
+  /// grid, and only if the file names it.
+  std::optional<Eigen::Vector3d> eye;
 };
 
-/// Reads a surface from PLY, OBJ, OFF or STL, each plain or gzip compressed. Everything in the file
-/// other than positions and faces is read over.
+/// Reads a surface from PLY, OBJ, OFF, STL, PCD or PTX, each plain or gzip compressed. Everything
+/// in the file other than positions and faces is read over. A grid of points that a scanner
+/// measured (an organised PCD, a PTX, a PLY with `range_grid` and no faces) is triangulated.
 ///
 /// Every vertex is finite and every index valid in what it returns; it may still be degenerate or
 /// not a manifold. Everything else throws `Error`: no such file, another format than the name says,
 /// more promised in a header than the file holds, no triangle with finite coordinates, indices out
-/// of range, no vertices, no faces (a point cloud), more than `limits`.
+/// of range, no vertices, no faces (a point cloud), more than `options` admit.
 ///
 /// Streams through a buffer of 1 MiB; memory is that of the mesh and never follows a promise of a
 /// header. Several threads may call the function at once.
-Scan read_scan(const std::filesystem::path& path, const ScanLimits& limits = {});
+Scan read_scan(const std::filesystem::path& path, const ScanOptions& options = {});
 
 }  // namespace semigeo::io

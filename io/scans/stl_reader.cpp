@@ -194,8 +194,8 @@ void read_binary(ByteSource& source, ScanBuilder& builder) {
   } while (is_followed_by_solid(source));
 }
 
-Scan read_stl(ByteSource& source, const ScanLimits& limits) {
-  ScanBuilder builder(source, limits);
+Scan read_stl(ByteSource& source, const ScanOptions& options) {
+  ScanBuilder builder(source, options);
   if (!has_binary_size(source) && is_text(source)) {
     StlText(source, builder).read();
     return builder.finish("STL ascii");

@@ -146,6 +146,7 @@ struct Parameter {
   const char* help = "";  ///< The help text of the option, cut into lines by newlines.
   Value value;
   bool in_configuration = true;  ///< The configuration file may have it.
+  bool default_in_json = true;   ///< JSON has the parameter even if it has its default.
   const char* excludes = "";     ///< The option of an earlier row that cannot be given with it.
 };
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "jobs/stages/parameter.hpp"
@@ -69,8 +70,13 @@ class ParameterFromJson {
 template <typename Owner>
 nlohmann::json json_of(const ParameterTable<Owner>& table, const Owner& owner) {
   auto json = nlohmann::json::object();  // an ordered map: keys come out sorted
-  for (const Parameter<Owner>& parameter : table)
-    json[parameter.key] = std::visit(ParameterToJson<Owner>(owner), parameter.value);
+  const Owner defaults;
+  for (const Parameter<Owner>& parameter : table) {
+    nlohmann::json value = std::visit(ParameterToJson<Owner>(owner), parameter.value);
+    if (parameter.default_in_json ||
+        value != std::visit(ParameterToJson<Owner>(defaults), parameter.value))
+      json[parameter.key] = std::move(value);
+  }
   return json;
 }
 
@@ -81,7 +87,8 @@ Owner from_json(const ParameterTable<Owner>& table, const nlohmann::json& json) 
   try {
     Owner owner;
     for (const Parameter<Owner>& parameter : table)
-      std::visit(ParameterFromJson<Owner>(json.at(parameter.key), owner), parameter.value);
+      if (parameter.default_in_json || json.contains(parameter.key))
+        std::visit(ParameterFromJson<Owner>(json.at(parameter.key), owner), parameter.value);
     return owner;
   } catch (const nlohmann::json::exception& e) {
     throw std::runtime_error(std::string("are no parameters: ") + e.what());

@@ -21,10 +21,10 @@ constexpr int kMostLevels = 16;
 
 /// Reads the features of a scene, and fills in the numbers of `scene`.
 kernels::RecognitionModel read_scene(const RecogniseJob& job,
-                                     const RecognitionParameters& parameters,
+                                     const RecognitionParameters& parameters, double depth_jump,
                                      const engine::RunContext& context, RecognisedScene& scene) {
   if (io::is_scan_name(job.scene)) {
-    const ScanSurface scan = read_surface(job.scene, job.input_xxh3);
+    const ScanSurface scan = read_surface(job.scene, job.input_xxh3, depth_jump);
     scene.format = scan.format;
     scene.repairs = scan.repairs;
     scene.vertices = scan.built.surface.vertex_count();
@@ -87,7 +87,8 @@ RecogniseJobResult run_recognise_job(const RecogniseJob& job, const SearchParame
   if (library.digest() != job.library_digest)
     throw io::Error(job.library, "", "the library has changed meanwhile", "run again");
   RecognisedScene scene = {.name = job.name, .input_name = job.input_name, .xxh3 = job.input_xxh3};
-  kernels::RecognitionModel model = read_scene(job, parameters_of(library), context, scene);
+  kernels::RecognitionModel model =
+      read_scene(job, parameters_of(library), parameters.depth_jump, context, scene);
   scene.features = static_cast<std::int64_t>(model.features.features.size());
   scene.samples = static_cast<std::int64_t>(model.samples.points.size());
   Recognition recognition = recognise(library, model, parameters, context);

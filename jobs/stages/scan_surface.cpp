@@ -49,8 +49,8 @@ std::string to_json(const kernels::SurfaceRepairs& repairs) {
 }
 
 ScanSurface read_surface(const std::filesystem::path& path, const std::string& xxh3,
-                         const kernels::Welding& welding) {
-  io::Scan scan = io::read_scan(path);
+                         double depth_jump, const kernels::Welding& welding) {
+  io::Scan scan = io::read_scan(path, {.depth_jump = depth_jump});
   if (io::xxh3_of_file(path) != xxh3)
     throw io::Error(path, "", "the file changed while it was read", "run again");
   ScanSurface result;
@@ -64,7 +64,8 @@ ScanSurface read_surface(const std::filesystem::path& path, const std::string& x
                     .faces_of_bad_vertices = scan.faces_of_bad_vertices,
                     .bytes_after_end = scan.bytes_after_end,
                     .surplus_values = scan.surplus_values,
-                    .unknown_header_lines = scan.unknown_header_lines};
+                    .unknown_header_lines = scan.unknown_header_lines,
+                    .depth_jump_triangles = scan.depth_jump_triangles};
   return result;
 }
 

@@ -34,6 +34,7 @@ struct ScanRepairs {
   std::int64_t bytes_after_end = 0;        ///< Bytes behind all that the scan's header promises.
   std::int64_t surplus_values = 0;         ///< Values of a text that its header does not declare.
   std::int64_t unknown_header_lines = 0;   ///< Lines of a header that mean nothing.
+  std::int64_t depth_jump_triangles = 0;   ///< Triangles of a range grid that joined two depths.
 
   bool operator==(const ScanRepairs&) const = default;
 };
@@ -43,6 +44,7 @@ template <typename Repairs, typename Visit>
 void each_rare_repair(Repairs& repairs, const Visit& visit) {
   visit("surplus_values", repairs.surplus_values);
   visit("unknown_header_lines", repairs.unknown_header_lines);
+  visit("depth_jump_triangles", repairs.depth_jump_triangles);
 }
 
 /// Calls visit(name, count) for every count, under its name in JSON. `Repairs` is `ScanRepairs`,
@@ -73,9 +75,10 @@ nlohmann::json json_of(const ScanRepairs& repairs);
 std::string to_json(const kernels::SurfaceRepairs& repairs);
 
 /// Reads and repairs a scan. `xxh3` is the digest that its bytes had when the job was planned.
-/// Throws io::Error if the scan cannot be read, has changed since then, has no usable triangle, or
-/// has lengths that single precision cannot hold.
+/// `depth_jump` is what kernels::triangulate_grid takes, if the scan is a range grid. Throws
+/// io::Error if the scan cannot be read, has changed since then, has no usable triangle, or has
+/// lengths that single precision cannot hold.
 ScanSurface read_surface(const std::filesystem::path& scan, const std::string& xxh3,
-                         const kernels::Welding& welding = {});
+                         double depth_jump, const kernels::Welding& welding = {});
 
 }  // namespace semigeo::jobs

@@ -1,5 +1,6 @@
 #include "jobs/stages/search_parameters.hpp"
 
+#include "jobs/stages/depth_jump_row.hpp"
 #include "jobs/stages/parameter_json.hpp"
 
 namespace semigeo::jobs {
@@ -14,6 +15,7 @@ const ParameterTable<SearchParameters>& search_parameter_table() {
                "which name one model, even if none is there",
        .value = choice(field<&Search::method>(),
                        {{"overlap", Method::kOverlap}, {"thesis", Method::kThesis}})},
+      depth_jump_row(field<&Search::depth_jump>()),
       // Only `semigeo recognise` declares the option, because its default depends on the method.
       {.key = "min_score", .value = NumberIn<Search, double>{field<&Search::min_score>()}},
   };

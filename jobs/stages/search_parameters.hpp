@@ -5,6 +5,7 @@
 
 #include "jobs/stages/parameter.hpp"
 #include "jobs/stages/recognise_scene.hpp"
+#include "kernels/repair/range_grid.hpp"
 
 namespace semigeo::jobs {
 
@@ -18,6 +19,7 @@ enum class RecognitionMethod {
 struct SearchParameters {
   RecognitionMethod method = RecognitionMethod::kOverlap;
   double min_score = RecognitionOptions{}.min_score;  ///< A model with less is not in the scene.
+  double depth_jump = kernels::kDepthJump;            ///< See `kernels::triangulate_grid`.
 };
 
 /// Returns what each of the parameters is called and which values it may have. A parameter is

@@ -243,7 +243,8 @@ SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters&
   Origins origins;
   kernels::Surface surface;
   {
-    ScanSurface scan = read_surface(job.input, job.input_xxh3, welding_of(parameters));
+    ScanSurface scan =
+        read_surface(job.input, job.input_xxh3, parameters.depth_jump, welding_of(parameters));
     result.format = scan.format;
     result.repairs = scan.repairs;
     result.quality.coordinate_step = scan.built.coordinate_step;

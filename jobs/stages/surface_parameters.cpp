@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "io/files/utf8.hpp"
+#include "jobs/stages/depth_jump_row.hpp"
 #include "jobs/stages/parameter_json.hpp"
 
 namespace semigeo::jobs {
@@ -46,6 +47,7 @@ Table preparation_rows() {
   using Options = PreparationOptions;
   constexpr auto kGroup = &Surface::preparation;
   return {
+      depth_jump_row(field<&Surface::depth_jump>()),
       {.key = "weld",
        .name = "weld",
        .help =

@@ -9,14 +9,16 @@
 #include "jobs/stages/level_features.hpp"
 #include "jobs/stages/parameter.hpp"
 #include "jobs/stages/prepare_surface.hpp"
+#include "kernels/repair/range_grid.hpp"
 #include "kernels/repair/surface_builder.hpp"
 
 namespace semigeo::jobs {
 
 /// Holds all parameters of a dataset: everything that its content depends on besides the scan.
 struct SurfaceParameters {
-  int levels = 8;             ///< Number of smoothing iterations; the dataset has one more level.
-  std::string weld = "auto";  ///< Which gaps are closed: "auto", "exact" or a length.
+  int levels = 8;  ///< Number of smoothing iterations; the dataset has one more level.
+  double depth_jump = kernels::kDepthJump;  ///< See `kernels::triangulate_grid`.
+  std::string weld = "auto";                ///< Which gaps are closed: "auto", "exact" or a length.
   PreparationOptions preparation = {};
   EvolutionOptions evolution = {};
   FeatureOptions features = {};

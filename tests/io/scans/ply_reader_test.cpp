@@ -148,6 +148,66 @@ TEST_F(PlyReader, ReadsTriangleStrips) {
                {"line 15", "vertex 7"});
 }
 
+const std::string kGridHeader = "obj_info num_cols 3\nobj_info num_rows 2\nelement vertex 5\n" +
+                                kXyz +
+                                "property float intensity\nelement range_grid 6\n"
+                                "property list uchar int vertex_indices\n";
+
+TEST_F(PlyReader, TriangulatesARangeGrid) {
+  const std::string points = "0 0 0 9\n1 0 0 9\n2 0 0 9\n0 1 0 9\n2 1 0 9\n";
+  const Scan ascii =
+      read("a.ply", header("ascii", kGridHeader) + points + "1 0\n1 1\n1 2\n1 3\n0\n1 4\n");
+  EXPECT_EQ(ascii.mesh.triangles, (Triangles{{3, 0, 1}, {1, 2, 4}}));
+  EXPECT_EQ(ascii.depth_jump_triangles, 0);
+  EXPECT_FALSE(ascii.eye);
+  std::string file = header("binary_big_endian", kGridHeader);
+  for (const float x : {0, 0, 0, 9, 1, 0, 0, 9, 2, 0, 0, 9, 0, 1, 0, 9, 2, 1, 0, 9})
+    file += bytes_of(x, std::endian::big);
+  for (const std::int32_t i : {0, 1, 2, 3, -1, 4})
+    file += i < 0 ? std::string(1, '\0') : '\1' + bytes_of(i, std::endian::big);
+  const Scan binary = read("b.ply", file);
+  EXPECT_EQ(binary.mesh.triangles, ascii.mesh.triangles);
+  EXPECT_EQ(binary.mesh.points, ascii.mesh.points);
+}
+
+/// A vertex that cannot be used is dropped, and its ray has met nothing.
+TEST_F(PlyReader, TriangulatesARangeGridAroundBadVertices) {
+  const Scan scan = read("a.ply", header("ascii", kGridHeader) +
+                                      "0 0 0 9\n1 0 0 9\n2 0 0 9\n0 1 0 9\nnan 1 0 9\n"
+                                      "1 0\n1 1\n1 2\n1 3\n0\n1 4\n");
+  EXPECT_EQ(scan.mesh.triangles, (Triangles{{3, 0, 1}}));
+  EXPECT_EQ(scan.bad_vertices, 1);
+}
+
+TEST_F(PlyReader, PassesOverTheGridOfAMesh) {
+  const Scan scan =
+      read("a.ply", header("ascii", kTriangle + "element range_grid 1\n"
+                                                "property list uchar int vertex_indices\n") +
+                        kTriangleBody + "1 0\n");
+  EXPECT_EQ(scan.mesh.triangles, (Triangles{{0, 1, 2}}));
+}
+
+TEST_F(PlyReader, RefusesBadRangeGrids) {
+  const std::string points = "0 0 0 9\n1 0 0 9\n2 0 0 9\n0 1 0 9\n2 1 0 9\n";
+  const auto grid = [&](const std::string& cells) {
+    return error("a.ply", header("ascii", kGridHeader) + points + cells);
+  };
+  expect_parts(grid("1 0\n1 1\n1 5\n"),
+               {"line 20", "refers to vertex 5", "only 5 vertices, numbered from 0"});
+  expect_parts(grid("1 -1\n"), {"line 18", "refers to vertex -1"});
+  expect_parts(grid("2 0 1\n"), {"line 18", "has 2 vertices, not 0 or 1"});
+  expect_parts(grid("1 0\n0\n"), {"promises 6 records of element 'range_grid'", "ends after 2"});
+  expect_parts(grid("1 0\n0\n0\n0\n0\n1 4\n"), {"5 points but no three of them are neighbours"});
+  const auto changed = [&](const std::string& from, const std::string& to) {
+    std::string declarations = kGridHeader;
+    declarations.replace(declarations.find(from), from.size(), to);
+    return error("b.ply", header("ascii", declarations) + points + "0\n0\n0\n0\n0\n0\n");
+  };
+  expect_parts(changed("num_cols 3", "num_cols 4"), {"line 10", "has 6 cells", "num_cols is 4"});
+  expect_parts(changed("num_cols 3", "num_cols 0"), {"num_cols is 0"});
+  expect_parts(changed("num_rows 2", "num_rows two"), {"obj_info num_rows", "missing"});
+}
+
 TEST_F(PlyReader, TriangulatesPolygonsAndCountsShortFaces) {
   const Scan scan = read("a.ply", header("ascii", "element vertex 4\n" + kXyz +
                                                       "element face 4\nproperty list uchar int "
@@ -337,7 +397,7 @@ TEST_F(PlyReader, RefusesBadHeaders) {
 
 TEST_F(PlyReader, RefusesScansWithoutASurface) {
   expect_parts(error("a.ply", header("ascii", "element vertex 2\n" + kXyz) + "0 0 0\n1 0 0\n"),
-               {"2 points but no faces", "Poisson"});
+               {"2 points but no faces", "organised PCD", "range_grid", "Poisson"});
   expect_parts(error("b.ply", header("ascii", "element vertex 0\n" + kXyz +
                                                   "element face 0\n"
                                                   "property list uchar int vertex_indices\n") +

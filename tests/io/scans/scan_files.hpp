@@ -58,14 +58,15 @@ inline std::string gzip(std::string_view plain) {
 /// Files of one format, read back.
 class ScanFileTest : public ::testing::Test {
  protected:
-  Scan read(std::string_view name, std::string_view bytes, const ScanLimits& limits = {}) {
-    return read_scan(write_file(folder_ / name, bytes), limits);
+  Scan read(std::string_view name, std::string_view bytes, const ScanOptions& options = {}) {
+    return read_scan(write_file(folder_ / name, bytes), options);
   }
 
   /// The message for a file that must be refused, without the folder's name.
-  std::string error(std::string_view name, std::string_view bytes, const ScanLimits& limits = {}) {
+  std::string error(std::string_view name, std::string_view bytes,
+                    const ScanOptions& options = {}) {
     try {
-      read(name, bytes, limits);
+      read(name, bytes, options);
     } catch (const Error& failure) {
       const std::string message = failure.what();
       const std::string prefix = folder_.path().string() + "/";

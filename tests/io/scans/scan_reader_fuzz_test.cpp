@@ -103,6 +103,56 @@ Seed binary_stl() {
   return {"binary.stl", file};
 }
 
+Seed grid_ply() {
+  std::string text =
+      "ply\nformat ascii 1.0\nobj_info num_cols 4\nobj_info num_rows 4\nelement vertex 16\n"
+      "property float x\nproperty float y\nproperty float z\nelement range_grid 16\n"
+      "property list uchar int vertex_indices\nend_header\n" +
+      grid_points("");
+  for (int i = 0; i < 16; ++i) text += i == 5 ? "0\n" : "1 " + std::to_string(i) + "\n";
+  return {"grid.ply", text};
+}
+
+/// A PCD of 4 x 4 points in each encoding.
+Seed pcd(const std::string& data) {
+  std::string file =
+      "# x\nVERSION 0.7\nFIELDS x y z a\nSIZE 4 4 8 1\nTYPE F F F U\nCOUNT 1 1 1 2\n"
+      "WIDTH 4\nHEIGHT 4\nVIEWPOINT 0 0 9 1 0 0 0\nPOINTS 16\nDATA " +
+      data + "\n";
+  std::vector<std::string> fields(4);
+  for (int i = 0; i < 16; ++i) {
+    const auto x = static_cast<float>(i % 4), y = static_cast<float>(i / 4);
+    if (data == "ascii")
+      file +=
+          std::to_string(i % 4) + " " + std::to_string(i / 4) + (i == 6 ? " nan" : " 1") + " 7 7\n";
+    if (data == "binary") file += bytes_of(x) + bytes_of(y) + bytes_of(1.0) + "ab";
+    fields[0] += bytes_of(x);
+    fields[1] += bytes_of(y);
+    fields[2] += bytes_of(1.0);
+    fields[3] += "ab";
+  }
+  if (data != "binary_compressed") return {data + ".pcd", file};
+  std::string packed;
+  for (const std::string& field : {fields[0], fields[1], fields[2]})
+    for (std::size_t at = 0; at < field.size(); at += 32)
+      packed += static_cast<char>(31) + field.substr(at, 32);
+  packed += std::string(
+      "\x01"
+      "ab"
+      "\xe0\x15\x01",
+      6);  // 30 bytes, 2 back
+  file += bytes_of(static_cast<std::uint32_t>(packed.size())) + bytes_of(16u * 18) + packed;
+  return {data + ".pcd", file};
+}
+
+Seed ptx() {
+  std::string text;
+  for (int cloud = 0; cloud < 2; ++cloud)
+    text +=
+        "4\n4\n1 2 9\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 2 9 1\n" + grid_points("");
+  return {"a.ptx", text};
+}
+
 std::vector<Seed> plain_seeds() {
   std::string facets = "solid a b\n";
   for (int i = 0; i < 4; ++i)
@@ -122,7 +172,12 @@ std::vector<Seed> plain_seeds() {
           binary_off(),
           {"ascii.stl", facets + "endsolid a b\n"},
           binary_stl(),
-          loose_ply()};
+          loose_ply(),
+          grid_ply(),
+          pcd("ascii"),
+          pcd("binary"),
+          pcd("binary_compressed"),
+          ptx()};
 }
 
 std::vector<Seed> seeds() {

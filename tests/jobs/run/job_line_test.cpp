@@ -38,10 +38,10 @@ void every_field_of_result(Result& result, const Visit& visit) {
          vanished] = result;
   visit_each(visit, format, vertices, triangles, parts, levels, vanished);
   {
-    auto& [surface, a, b, c, d, e, f, g] = repairs;
-    visit_each(visit, a, b, c, d, e, f, g);
-    auto& [h, i, j, k, l, m, n, o, p] = surface;
-    visit_each(visit, h, i, j, k, l, m, n, o, p);
+    auto& [surface, a, b, c, d, e, f, g, h] = repairs;
+    visit_each(visit, a, b, c, d, e, f, g, h);
+    auto& [i, j, k, l, m, n, o, p, q] = surface;
+    visit_each(visit, i, j, k, l, m, n, o, p, q);
   }
   {
     auto& [a, b, c, d, e] = quality;

@@ -23,7 +23,7 @@ TEST(SurfaceParametersTest, AreJsonWithSortedKeys) {
   const SurfaceParameters other = unusual_parameters();
   EXPECT_EQ(
       to_json(other),
-      R"({"compression":"none","coordinates":"polar","decimate":"0.25 length units",)"
+      R"({"compression":"none","coordinates":"polar","decimate":"0.25 length units","depth_jump":6.5,)"
       R"("feature_completeness":0.75,"feature_radius":0.0,"fill_holes":40,)"
       R"("length_unit":"m\"m","level":2,"levels":3,"principal":true,)"
       R"("remesh":false,"rescale":"edges","schedule":"octaves","step":0.1,"surface":"flat","target_vertices":1993,"weld":"0.5"})");
@@ -37,7 +37,7 @@ TEST(SurfaceParametersTest, AreJsonWithSortedKeys) {
 TEST(SurfaceParametersTest, EachOfThemShows) {
   const SurfaceParameters plain;
   std::set<std::string> texts = {to_json(plain)};
-  for (const int field : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13}) {
+  for (const int field : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14}) {
     SurfaceParameters changed;
     if (field == 0) changed.levels = 9;
     if (field == 13) changed.weld = "exact";
@@ -52,6 +52,7 @@ TEST(SurfaceParametersTest, EachOfThemShows) {
     if (field == 10) changed.preparation.fill_holes = 3;
     if (field == 12) changed.evolution.rescale = Rescale::kNone;
     if (field == 11) changed.preparation.target_vertices = 100;
+    if (field == 14) changed.depth_jump = 5;
     if (field == 7) changed.evolution.principal = true;
     EXPECT_TRUE(texts.insert(to_json(changed)).second) << "field " << field;
     EXPECT_TRUE(nlohmann::json::accept(to_json(changed)));

@@ -7,6 +7,7 @@ namespace semigeo::jobs {
 /// Returns parameters of which none has its default value.
 inline SurfaceParameters unusual_parameters() {
   return {.levels = 3,
+          .depth_jump = 6.5,
           .weld = "0.5",
           .preparation = {.fill_holes = 40,
                           .decimate = 0.25,
