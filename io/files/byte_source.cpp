@@ -2,33 +2,30 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
-#include "io/files/error.hpp"
-#include "io/files/gzip_stream.hpp"
+#include "io/files/compression.hpp"
+#include "io/files/container.hpp"
+#include "io/files/input_file.hpp"
 
 namespace semigeo::io {
 
 ByteSource::ByteSource(const std::filesystem::path& path)
-    : file_(path), window_(std::make_unique_for_overwrite<char[]>(kWindowBytes)) {
+    : path_(path), window_(std::make_unique_for_overwrite<char[]>(kWindowBytes)) {
   cursor_ = end_ = window_.get();
-  std::string start(GzipStream::kMagic.size(), '\0');
-  start.resize(file_.read(start));
-  if (start == GzipStream::kMagic) {
-    gzip_ = std::make_unique<GzipStream>(file_, start);
-  } else {
-    std::copy(start.begin(), start.end(), window_.get());
-    end_ = cursor_ + start.size();
-  }
+  std::unique_ptr<ByteStream> bytes = open_bytes(path);
+  const auto* const file = dynamic_cast<const InputFile*>(bytes.get());
+  const std::int64_t file_size = file == nullptr ? 0 : file->size();
+  Unpacked content = unpacked(std::move(bytes));
+  stream_ = std::move(content.stream);
+  if (content.compression != nullptr) compression_ = content.compression->name;
+  if (file != nullptr && content.compression == nullptr) size_ = file_size;
 }
 
 ByteSource::~ByteSource() = default;
 
 std::string ByteSource::place(std::int64_t byte) const {
-  return "byte " + std::to_string(byte) + (compressed() ? " after decompression" : "");
-}
-
-std::size_t ByteSource::read(char* to, std::size_t bytes) {
-  return gzip_ ? gzip_->read({to, bytes}) : file_.read({to, bytes});
+  return "byte " + std::to_string(byte) + (compression_.empty() ? "" : " after decompression");
 }
 
 bool ByteSource::refill(std::size_t bytes) {
@@ -37,7 +34,7 @@ bool ByteSource::refill(std::size_t bytes) {
   std::memmove(window_.get(), cursor_, kept);
   cursor_ = window_.get();
   while (kept < bytes && !ended_) {
-    const std::size_t got = read(window_.get() + kept, kWindowBytes - kept);
+    const std::size_t got = stream_->read({window_.get() + kept, kWindowBytes - kept});
     ended_ = got == 0;
     kept += got;
   }
@@ -56,8 +53,8 @@ std::int64_t ByteSource::skip(std::int64_t bytes) {
 }
 
 std::optional<std::int64_t> ByteSource::bytes_left() const {
-  if (compressed()) return std::nullopt;
-  return std::max<std::int64_t>(file_.size() - position(), 0);
+  if (!size_) return std::nullopt;
+  return std::max<std::int64_t>(*size_ - position(), 0);
 }
 
 std::int64_t ByteSource::drain() {

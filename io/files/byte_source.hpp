@@ -8,15 +8,14 @@
 #include <string>
 #include <string_view>
 
-#include "io/files/input_file.hpp"
+#include "io/files/byte_stream.hpp"
 
 namespace semigeo::io {
 
-class GzipStream;
-
-/// Reads a file's bytes from front to back through one fixed window. A gzip file (recognised by its
-/// first bytes; several members in a row are one stream) is decompressed on the way. Memory does
-/// not grow with the file. Damaged or cut gzip data is an `Error`. The class is not thread-safe.
+/// Reads the bytes of a file, or of a member of a container (container.hpp), from front to back
+/// through one fixed window. What is compressed (compression.hpp), as its first bytes show, is
+/// decompressed on the way. Memory does not grow with the file. Damaged or cut data is an `Error`.
+/// The class is not thread-safe.
 class ByteSource {
  public:
   /// The largest number of bytes that can be looked at without consuming.
@@ -27,11 +26,12 @@ class ByteSource {
   ByteSource(const ByteSource&) = delete;
   ByteSource& operator=(const ByteSource&) = delete;
 
-  const std::filesystem::path& path() const { return file_.path(); }
-  bool compressed() const { return gzip_ != nullptr; }
+  const std::filesystem::path& path() const { return path_; }
+  /// Returns "gzip" or another compression, or an empty text.
+  std::string_view compression() const { return compression_; }
   /// Returns the number of bytes consumed so far, of the decompressed stream.
   std::int64_t position() const { return window_position_ + (cursor_ - window_.get()); }
-  /// Returns "byte N", and for gzip also what the byte is one of.
+  /// Returns "byte N", and for compressed bytes also what the byte is one of.
   std::string place(std::int64_t byte) const;
 
   /// Returns what has been read and not consumed. It is valid until the next call of another
@@ -46,18 +46,20 @@ class ByteSource {
   void consume(std::size_t bytes) { cursor_ += bytes; }
   /// Moves past up to this number of bytes and returns how many there were.
   std::int64_t skip(std::int64_t bytes);
-  /// Returns the number of bytes not yet consumed, or nothing for a compressed file.
+  /// Returns the number of bytes not yet consumed, or nothing for what is
+  /// compressed or in a container: sizes that are told there are not trusted.
   std::optional<std::int64_t> bytes_left() const;
-  /// Reads to the end, which for gzip verifies the checksum. Returns how many of the bytes were
-  /// neither blanks, line ends nor zeros.
+  /// Reads to the end, which for compressed bytes verifies the checksum. Returns how many of the
+  /// bytes were neither blanks, line ends nor zeros.
   std::int64_t drain();
 
  private:
   bool refill(std::size_t bytes);
-  std::size_t read(char* to, std::size_t bytes);
 
-  InputFile file_;
-  std::unique_ptr<GzipStream> gzip_;
+  std::filesystem::path path_;
+  std::string_view compression_;
+  std::optional<std::int64_t> size_;  // of a plain file
+  std::unique_ptr<ByteStream> stream_;
   std::unique_ptr<char[]> window_;
   const char* cursor_ = nullptr;
   const char* end_ = nullptr;

@@ -6,7 +6,7 @@
 #include <new>
 #include <vector>
 
-#include "io/files/input_file.hpp"
+#include "io/files/container.hpp"
 
 namespace semigeo::io {
 namespace {
@@ -31,16 +31,19 @@ std::string hex(XXH128_hash_t hash) {
 
 }  // namespace
 
-std::string xxh3_of_file(const std::filesystem::path& path) {
-  InputFile file(path);
+std::string xxh3_of_stream(ByteStream& stream) {
   const std::unique_ptr<XXH3_state_t, FreeState> state(XXH3_createState());
   if (!state) throw std::bad_alloc();
   XXH3_128bits_reset(state.get());
   std::vector<char> buffer(kBufferBytes);
-  while (const std::size_t got = file.read(buffer))
+  while (const std::size_t got = stream.read(buffer))
     XXH3_128bits_update(state.get(), buffer.data(), got);
 
   return hex(XXH3_128bits_digest(state.get()));
+}
+
+std::string xxh3_of_file(const std::filesystem::path& path) {
+  return xxh3_of_stream(*open_bytes(path));
 }
 
 std::string xxh3_of_text(std::string_view text) {

@@ -10,6 +10,7 @@ struct FileSignature {
   std::string_view what;       ///< "a JPEG image": completes the sentence "the file is ...".
   std::string_view remedy;     ///< Says what to do.
   std::string_view extension;  ///< ".ply": extension that fits. Empty if it is no scan.
+  bool is_container = false;   ///< It is a container that semigeo opens if its extension fits.
   bool is_zeros = false;       ///< The bytes are all zeros.
 };
 

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "io/files/byte_source.hpp"
+#include "io/files/compression.hpp"
 #include "io/files/error.hpp"
 #include "io/files/file_signature.hpp"
 #include "io/scans/scan_formats.hpp"
@@ -22,11 +23,16 @@ std::string lower_case_extension(const std::filesystem::path& path) {
 }
 
 const ScanFormat* find_format(const std::filesystem::path& path) {
-  std::string extension = lower_case_extension(path);
-  if (extension == ".gz") extension = lower_case_extension(path.stem());
+  const std::string extension =
+      lower_case_extension(compression_of_name(path) == nullptr ? path : path.stem());
   for (const ScanFormat* format : kScanFormats)
     if (format->extension == extension) return format;
   return nullptr;
+}
+
+/// Returns "PLY ascii, gzip".
+std::string with_compression(std::string format, std::string_view compression) {
+  return compression.empty() ? format : format + ", " + std::string(compression);
 }
 
 /// Throws the Error of a file that is something else than its extension says, if its first bytes
@@ -51,7 +57,14 @@ std::string scan_variant(const std::filesystem::path& path) {
   ByteSource source(path);
   source.fill(kVariantBytes);
   const std::string variant = format->variant(source.ahead().substr(0, kVariantBytes));
-  return source.compressed() ? variant + ", gzip" : variant;
+  return with_compression(variant, source.compression());
+}
+
+std::string likely_scan_variant(const std::filesystem::path& path) {
+  const ScanFormat* format = find_format(path);
+  if (format == nullptr) return "";
+  const Compression* compression = compression_of_name(path);
+  return with_compression(format->variant({}), compression == nullptr ? "" : compression->name);
 }
 
 std::string scan_extensions(std::string_view separator, std::string_view last_separator) {
@@ -69,7 +82,8 @@ Scan read_scan(const std::filesystem::path& path, const ScanOptions& options) {
   const ScanFormat* format = find_format(path);
   if (format == nullptr)
     throw Error(path, "", "its name is not that of a scan",
-                "scans are " + scan_extensions(", ", " and ") + ", and the same with .gz");
+                "scans are " + scan_extensions(", ", " and ") +
+                    ", and the same with .gz, .bz2, .xz or .zst");
   if (!source.fill(1)) throw Error(path, "", "the file is empty", "copy it again from its source");
   source.fill(kVariantBytes);
   const std::optional<FileSignature> signature = file_signature(source.ahead());
@@ -77,10 +91,10 @@ Scan read_scan(const std::filesystem::path& path, const ScanOptions& options) {
   try {
     Scan scan = format->read(source, options);
     scan.bytes_after_end = source.drain();
-    if (source.compressed()) scan.format += ", gzip";
+    scan.format = with_compression(std::move(scan.format), source.compression());
     return scan;
   } catch (const Error&) {
-    source.drain();  // throws if the gzip data is damaged, which explains the failure better
+    source.drain();  // throws if compressed data is damaged, which explains the failure better
     refuse_other_kind(source, *format, signature);
     throw;
   }

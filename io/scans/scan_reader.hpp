@@ -12,13 +12,17 @@
 namespace semigeo::io {
 
 /// Returns whether a file's name is that of a scan: it has the extension of a format in any case,
-/// before a last ".gz" if there is one. The file is not looked at.
+/// before a last ".gz", ".bz2", ".xz" or
+/// ".zst" if there is one. The file is not looked at.
 bool is_scan_name(const std::filesystem::path& path);
 
 /// Returns the variant of the format that the first bytes of a file show: "PLY ascii", "STL binary,
 /// gzip". Returns an empty text if the name is not that of a scan. Throws `Error` if the file
 /// cannot be read.
 std::string scan_variant(const std::filesystem::path& path);
+
+/// Returns the variant that the name alone makes likely: the one with the most vertices in a byte.
+std::string likely_scan_variant(const std::filesystem::path& path);
 
 /// Returns the extensions of all formats in words: ".ply, .obj, .off and .stl" for ", " and " and
 /// ".
@@ -53,9 +57,10 @@ struct Scan {
   std::optional<Eigen::Vector3d> eye;
 };
 
-/// Reads a surface from PLY, OBJ, OFF, STL, PCD or PTX, each plain or gzip compressed. Everything
-/// in the file other than positions and faces is read over. A grid of points that a scanner
-/// measured (an organised PCD, a PTX, a PLY with `range_grid` and no faces) is triangulated.
+/// Reads a surface from PLY, OBJ, OFF, STL, PCD or PTX, each plain or compressed, in a file or in a
+/// container of files. Everything in the file other than positions and faces is read over. A grid
+/// of points that a scanner measured (an organised PCD, a PTX, a PLY with `range_grid` and no faces)
+/// is triangulated.
 ///
 /// Every vertex is finite and every index valid in what it returns; it may still be degenerate or
 /// not a manifold. Everything else throws `Error`: no such file, another format than the name says,

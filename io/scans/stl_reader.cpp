@@ -50,7 +50,7 @@ std::int64_t promised_triangles(const ByteSource& source) {
 
 /// Returns whether a plain file has exactly the size that its count of triangles asks for.
 bool has_binary_size(ByteSource& source) {
-  if (source.compressed() || !source.fill(kPreambleBytes)) return false;
+  if (!source.bytes_left() || !source.fill(kPreambleBytes)) return false;
   return source.bytes_left() == kPreambleBytes + kRecordBytes * promised_triangles(source);
 }
 

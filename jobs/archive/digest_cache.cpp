@@ -57,6 +57,11 @@ bool is_scan(const std::string& path) {
   return path.starts_with('/');
 }
 
+/// Returns the file whose stamp tells whether a scan has changed.
+const fs::path& file_to_stamp(const FoundScan& scan) {
+  return scan.container.empty() ? scan.file : scan.container;
+}
+
 }  // namespace
 
 std::optional<FileStamp> stamp_of(const fs::path& file) {
@@ -133,32 +138,60 @@ void DigestCache::remember(const std::string& path, const Reading& reading) {
   }
 }
 
+void DigestCache::digest_members(const std::vector<FoundScan>& scans, int threads,
+                                 std::vector<Reading>& readings,
+                                 std::vector<ScanDigest>& digests) const {
+  std::map<fs::path, std::vector<std::size_t>> by_container;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    if (scans[i].container.empty() || !scans[i].error.empty()) continue;
+    if (const Entry* known = begin(scans[i], readings[i])) {
+      digests[i].xxh3 = known->keys.input_xxh3;
+    } else {
+      by_container[scans[i].container].push_back(i);
+    }
+  }
+  std::vector<WantedMembers> wanted;
+  for (const auto& [container, members] : by_container) {
+    wanted.push_back({.container = container, .names = {}});
+    for (const std::size_t i : members)
+      wanted.back().names.push_back(scans[i].input.lexically_relative(container).native());
+  }
+  const auto found = digests_of_members(wanted, threads);
+  auto of_container = found.begin();
+  for (const auto& [container, members] : by_container) {
+    for (const std::size_t i : members) {
+      digests[i] = of_container->at(scans[i].input.lexically_relative(container).native());
+      if (digests[i].error.empty()) end(scans[i], digests[i], readings[i]);
+    }
+    ++of_container;
+  }
+}
+
 std::vector<ScanDigest> DigestCache::scan_digests(const std::vector<FoundScan>& scans,
                                                   int threads) {
   std::vector<Reading> readings(scans.size());
   std::vector<ScanDigest> digests(scans.size());
+  digest_members(scans, threads, readings, digests);
   const auto digest = [&](std::size_t i) {
-    Reading& reading = readings[i];
-    reading.begun = now_();
-    reading.before = stamp_of(scans[i].file);
-    if (const Entry* known = find(scans[i].file.native(), reading.before)) {
+    if (const Entry* known = begin(scans[i], readings[i])) {
       digests[i].xxh3 = known->keys.input_xxh3;
       return;
     }
     try {
       digests[i].xxh3 = io::xxh3_of_file(scans[i].input);
+      end(scans[i], digests[i], readings[i]);
     } catch (const std::exception& e) {
       digests[i].error = e.what();
-      return;
     }
-    reading.keys = {.job_key = std::string(kNoJob), .input_xxh3 = digests[i].xxh3};
-    reading.after = stamp_of(scans[i].file);
   };
   const auto count = static_cast<std::int64_t>(scans.size());
   engine::Workers(threads).for_blocks(count, 1, [&](engine::IndexRange range) {
     const auto i = static_cast<std::size_t>(range.begin);
-    digests[i].error = scans[i].error;
-    if (scans[i].error.empty()) digest(i);
+    if (!scans[i].error.empty()) {
+      digests[i].error = scans[i].error;
+    } else if (scans[i].container.empty()) {
+      digest(i);
+    }
   });
   for (std::size_t i = 0; i < scans.size(); ++i) {
     const std::string& path = scans[i].file.native();
@@ -169,6 +202,17 @@ std::vector<ScanDigest> DigestCache::scan_digests(const std::vector<FoundScan>& 
     }
   }
   return digests;
+}
+
+const DigestCache::Entry* DigestCache::begin(const FoundScan& scan, Reading& reading) const {
+  reading.begun = now_();
+  reading.before = stamp_of(file_to_stamp(scan));
+  return find(scan.file.native(), reading.before);
+}
+
+void DigestCache::end(const FoundScan& scan, const ScanDigest& digest, Reading& reading) {
+  reading.keys = {.job_key = std::string(kNoJob), .input_xxh3 = digest.xxh3};
+  reading.after = stamp_of(file_to_stamp(scan));
 }
 
 std::optional<DatasetKeys> DigestCache::dataset_keys(const std::string& name) {
@@ -194,7 +238,8 @@ std::optional<DatasetKeys> DigestCache::dataset_keys(const std::string& name) {
 }
 
 fs::path DigestCache::file_of(const std::string& path) const {
-  return is_scan(path) ? fs::path(path) : dataset_path(archive_, path);
+  if (!is_scan(path)) return dataset_path(archive_, path);
+  return io::outer_file(path);
 }
 
 void DigestCache::write() {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "jobs/archive/containers.hpp"
 #include "jobs/archive/find_scans.hpp"
 
 namespace semigeo::jobs {
@@ -30,17 +31,11 @@ struct DatasetKeys {
   std::string input_xxh3;
 };
 
-/// The digest of a scan, or why there is none.
-struct ScanDigest {
-  std::string xxh3;
-  std::string error;
-};
-
 /// Remembers digests, so that planning need not read files that have not changed since the last
 /// run. ARCHIVE/digests.txt holds a line for each scan and dataset: digest, job key, stamp, path. A
-/// file with another stamp is read again. A file that was changed less than two seconds before it
-/// was read is not remembered, because a second change could leave the same times. Only speed
-/// depends on digests.txt: it may be removed.
+/// file with another stamp is read again. A member of a container has the stamp of the container. A
+/// file that was changed less than two seconds before it was read is not remembered, because a
+/// second change could leave the same times. Only speed depends on digests.txt: it may be removed.
 class DigestCache {
  public:
   /// Returns the time in nanoseconds since 1970.
@@ -55,7 +50,7 @@ class DigestCache {
   static DigestCache read(const std::filesystem::path& archive, Clock clock = system_clock);
 
   /// Returns the XXH3_128 of each scan's bytes, read on at most this number of threads at once (0:
-  /// one for each core).
+  /// one for each core). A container is read once for all its members.
   std::vector<ScanDigest> scan_digests(const std::vector<FoundScan>& scans, int threads);
   /// Returns the keys of the archive's dataset of this name, or nothing if it is absent, unreadable
   /// or incomplete.
@@ -71,6 +66,11 @@ class DigestCache {
     bool used = false;
   };
   struct Reading;
+  void digest_members(const std::vector<FoundScan>& scans, int threads,
+                      std::vector<Reading>& readings, std::vector<ScanDigest>& digests) const;
+  /// Begins a reading of a scan. Returns its entry if it has not changed.
+  const Entry* begin(const FoundScan& scan, Reading& reading) const;
+  static void end(const FoundScan& scan, const ScanDigest& digest, Reading& reading);
   const Entry* find(const std::string& path, const std::optional<FileStamp>& stamp) const;
   void remember(const std::string& path, const Reading& reading);
   std::filesystem::path file_of(const std::string& path) const;

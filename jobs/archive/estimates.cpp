@@ -57,7 +57,11 @@ constexpr std::array<FormatRate, 14> kFormats = {{
 }};
 
 double built_in_file_bytes(const std::string& format) {
-  const auto* const found = std::ranges::find(kFormats, format, &FormatRate::format);
+  const std::size_t compression = format.find(", ");
+  const std::string known = compression == std::string::npos
+                                ? format
+                                : format.substr(0, compression) + ", gzip";  // or a denser one
+  const auto* const found = std::ranges::find(kFormats, known, &FormatRate::format);
   return found == kFormats.end() ? kUnknownFileBytes : found->bytes;
 }
 

@@ -6,12 +6,16 @@
 #include <cctype>
 #include <functional>
 #include <iterator>
+#include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
+#include "io/files/container.hpp"
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
 #include "io/scans/scan_reader.hpp"
+#include "jobs/archive/containers.hpp"
 
 namespace semigeo::jobs {
 namespace {
@@ -105,6 +109,46 @@ FolderId id_of(const fs::path& folder) {
   return {status.st_dev, status.st_ino};
 }
 
+/// Returns whether a member is `within`, or in the folder of this name; "" is the whole container.
+bool is_within(const std::string& name, const std::string& within) {
+  return within.empty() || name == within ||
+         (name.starts_with(within) && name[within.size()] == '/');
+}
+
+FoundScan found_member(const FoundScan& container, const io::Member& member) {
+  const fs::path relative = fs::path(container.relative) / member.name;
+  FoundScan scan{.input = container.input / member.name,
+                 .relative = relative.generic_string(),
+                 .name = dataset_name(relative),
+                 .file = container.file / member.name,
+                 .error = "",
+                 .container = container.input,
+                 .bytes = static_cast<std::uintmax_t>(member.bytes)};
+  if (member.encrypted)
+    scan.error = io::Error(scan.input, "", "is encrypted",
+                           "unpack the container with its password and give the scans")
+                     .what();
+  return scan;
+}
+
+/// Counts a member that is no scan.
+void pass_over(const FoundScan& container, const io::Member& member, PassedOver& passed_over) {
+  ++passed_over.files[kind_of(member.name)];
+  if (io::is_container_name(member.name))
+    passed_over.notes.push_back((container.input / member.name).string() +
+                                ": a container in a container is not opened; unpack it");
+}
+
+/// Counts links, and says which members have the names of others.
+void note(const FoundScan& container, const io::ContainerListing& listing,
+          PassedOver& passed_over) {
+  if (listing.links > 0) passed_over.files["links in containers"] += listing.links;
+  if (listing.repeated > 0)
+    passed_over.notes.push_back(
+        container.input.string() + ": " + std::to_string(listing.repeated) +
+        " members have the name of one before them; the first of each name is read");
+}
+
 /// Searches inputs for scans.
 class Search {
  public:
@@ -115,22 +159,42 @@ class Search {
   void add_input(const fs::path& input) {
     std::error_code error;
     const fs::file_status status = fs::status(input, error);
-    if (!fs::exists(status)) throw io::Error(input, "", "no such file or folder", "check the path");
     if (fs::is_directory(status)) {
       search_folder(input);
-    } else {
+    } else if (fs::exists(status)) {
       add_file(input);
+    } else if (const auto place = io::member_path(input)) {
+      found_.push_back({found_scan(place->container, place->container.filename()), place->member});
+    } else {
+      throw io::Error(input, "", "no such file or folder", "check the path");
     }
   }
 
   FoundScans found() && {
+    const std::map<fs::path, io::ContainerListing> listings = listings_of_containers();
+    FoundScans result{.scans = {}, .passed_over = std::move(passed_over_files_)};
+    std::set<fs::path> counted;
+    for (Found& each : found_) {
+      const auto listing = listings.find(each.scan.file);
+      if (!each.within) {
+        result.scans.push_back(std::move(each.scan));
+      } else {
+        add_members(each, listing->second, counted.insert(each.scan.file).second, result);
+      }
+    }
     std::set<fs::path> seen;
-    std::erase_if(found_.scans,
+    std::erase_if(result.scans,
                   [&](const FoundScan& scan) { return !seen.insert(scan.file).second; });
-    return std::move(found_);
+    return result;
   }
 
  private:
+  /// A scan, or a container if `within` is set: the folder or file in it that is wanted, or "".
+  struct Found {
+    FoundScan scan;
+    std::optional<std::string> within;
+  };
+
   /// The state of the search of one input.
   struct Folder {
     fs::path top;
@@ -142,7 +206,11 @@ class Search {
   };
 
   bool wants(const fs::path& file) const {
-    return io::is_scan_name(file) || (datasets_ && is_dataset(file));
+    return io::is_scan_name(file) || (datasets_ && is_dataset(file)) || io::is_container_name(file);
+  }
+  static Found found(const fs::path& file, const fs::path& relative) {
+    return {found_scan(file, relative),
+            io::is_container_name(file) ? std::optional("") : std::nullopt};
   }
   bool enters(const fs::path& folder) const {
     std::error_code ignored;
@@ -155,8 +223,9 @@ class Search {
     if (!wants(file))
       throw io::Error(file, "", "is not a scan that semigeo reads",
                       "give " + io::scan_extensions(", ", " or ") + " files, also as .gz, " +
-                          (datasets_ ? "datasets (.vtkhdf), " : "") + "or folders of them");
-    found_.scans.push_back(found_scan(file, file.filename()));
+                          (datasets_ ? "datasets (.vtkhdf), " : "") +
+                          "or folders or containers (.zip, .7z, .tar) of them");
+    found_.push_back(found(file, file.filename()));
   }
 
   void add_entry(Folder& search, const fs::directory_entry& entry, bool counts) {
@@ -171,7 +240,7 @@ class Search {
     } else if (wants(entry.path())) {
       search.files.push_back(entry.path());
     } else if (counts) {
-      ++found_.passed_over.files[kind_of(entry.path())];
+      ++passed_over_files_.files[kind_of(entry.path())];
     }
   }
 
@@ -206,15 +275,56 @@ class Search {
     }
     std::ranges::sort(search.files);
     for (const fs::path& file : search.files)
-      found_.scans.push_back(found_scan(file, file.lexically_relative(top)));
+      found_.push_back(found(file, file.lexically_relative(top)));
     std::ranges::sort(search.unsearched, {}, &FoundScan::input);
-    std::ranges::move(search.unsearched, std::back_inserter(found_.scans));
+    for (FoundScan& folder : search.unsearched) found_.push_back({std::move(folder), std::nullopt});
+  }
+
+  /// Lists each container once. The key is its identity.
+  std::map<fs::path, io::ContainerListing> listings_of_containers() const {
+    std::map<fs::path, io::ContainerListing> listings;
+    std::vector<fs::path> containers;
+    std::vector<fs::path> keys;
+    for (const Found& each : found_) {
+      if (!each.within || !listings.try_emplace(each.scan.file).second) continue;
+      containers.push_back(each.scan.input);
+      keys.push_back(each.scan.file);
+    }
+    std::vector<io::ContainerListing> listed = list_containers(containers);
+    for (std::size_t i = 0; i < keys.size(); ++i) listings[keys[i]] = std::move(listed[i]);
+    return listings;
+  }
+
+  /// Adds the scans that are wanted of a container, in the order of their names.
+  static void add_members(const Found& container, const io::ContainerListing& listing, bool counts,
+                          FoundScans& result) {
+    std::vector<FoundScan> scans;
+    for (const io::Member& member : listing.members) {
+      if (is_hidden_member(member.name) || !is_within(member.name, *container.within)) continue;
+      if (io::is_scan_name(member.name)) {
+        scans.push_back(found_member(container.scan, member));
+      } else if (counts) {
+        pass_over(container.scan, member, result.passed_over);
+      }
+    }
+    if (counts) note(container.scan, listing, result.passed_over);
+    const bool missing = scans.empty() && listing.error.empty() && !container.within->empty();
+    if (missing)
+      throw io::Error(container.scan.input / *container.within, "",
+                      "the container has no scan of this name and no folder with scans",
+                      "list what it has: semigeo info " + container.scan.input.string());
+    std::ranges::sort(scans, {}, &FoundScan::input);
+    std::ranges::move(scans, std::back_inserter(result.scans));
+    if (listing.error.empty()) return;
+    result.scans.push_back(container.scan);
+    result.scans.back().error = listing.error;
   }
 
   bool datasets_;
   std::vector<fs::path> passed_over_;
   std::set<FolderId> counted_;
-  FoundScans found_;
+  std::vector<Found> found_;
+  PassedOver passed_over_files_;
 };
 
 FoundScans find(const std::vector<fs::path>& inputs, Search search) {

@@ -13,7 +13,8 @@ struct ScanSize {
 };
 
 /// Returns the format and the size, which need only the first kilobyte of the file. They are empty
-/// and 0 if the file cannot be read.
+/// and 0 if the file cannot be read. A member of a container is not looked for, because that may
+/// need a pass over the container: its format is the likely one, and its size 0.
 ScanSize scan_size(const std::filesystem::path& scan);
 
 }  // namespace semigeo::jobs

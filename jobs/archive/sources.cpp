@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "io/files/atomic_file.hpp"
+#include "io/files/container.hpp"
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
 #include "jobs/archive/path_text.hpp"
@@ -36,7 +37,7 @@ bool is_variant(const std::string& name, const std::string& base) {
 
 bool is_gone(const fs::path& scan) {
   std::error_code error;
-  return fs::status(scan, error).type() == fs::file_type::not_found;
+  return fs::status(io::outer_file(scan), error).type() == fs::file_type::not_found;
 }
 
 Sources Sources::read(const fs::path& archive) {

@@ -30,7 +30,8 @@ class Sources {
   std::map<std::string, std::filesystem::path> by_name_;
 };
 
-/// Returns whether the scan is gone. A scan about which nothing can be known is not gone.
+/// Returns whether the scan, or the container that it is a member of, is gone. A scan about which
+/// nothing can be known is not gone.
 bool is_gone(const std::filesystem::path& scan);
 
 /// A scan that needs a name.

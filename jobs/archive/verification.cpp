@@ -1,16 +1,13 @@
 #include "jobs/archive/verification.hpp"
 
-#include <algorithm>
 #include <csignal>
 #include <cstdint>
 #include <system_error>
-#include <utility>
 
-#include "engine/fork_child.hpp"
-#include "engine/machine.hpp"
 #include "io/dataset/dataset.hpp"
 #include "io/files/error.hpp"
 #include "io/library/hash_library.hpp"
+#include "jobs/archive/in_children.hpp"
 
 namespace semigeo::jobs {
 namespace {
@@ -39,9 +36,8 @@ std::string problem_of(const fs::path& file, Verify verify) {
   }
 }
 
-std::string result_of(engine::ForkedChild& child, const fs::path& file) {
-  engine::ForkedResult result = child.wait();
-  if (result.exit_code == 0) return std::move(result.text);
+std::string result_of(const engine::ForkedResult& result, const fs::path& file) {
+  if (result.exit_code == 0) return result.text;
   return io::Error(file, "",
                    result.signal == SIGXCPU ? "it is damaged so that HDF5 never ends reading it"
                                             : "it is damaged so that HDF5 crashes over it",
@@ -50,26 +46,21 @@ std::string result_of(engine::ForkedChild& child, const fs::path& file) {
 }
 
 std::vector<std::string> verify_all(const std::vector<fs::path>& files, Verify verify,
-                                    std::size_t at_once) {
-  std::vector<engine::ForkedChild> children;
+                                    int at_once) {
+  const auto results = in_children(
+      files.size(), at_once, [&](std::size_t i) { return problem_of(files[i], verify); },
+      [&](std::size_t i) { return most_seconds(files[i]); });
   std::vector<std::string> problems;
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    while (children.size() < std::min(i + at_once, files.size())) {
-      const fs::path& file = files[children.size()];
-      children.emplace_back([&] { return problem_of(file, verify); }, most_seconds(file));
-    }
-    problems.push_back(result_of(children[i], files[i]));
-  }
+  for (std::size_t i = 0; i < files.size(); ++i)
+    problems.push_back(result_of(results[i], files[i]));
   return problems;
 }
 
 }  // namespace
 
 std::vector<std::string> verify_datasets(const std::vector<fs::path>& datasets, int at_once) {
-  const int most = at_once > 0 ? at_once : engine::usable_resources().cores;
   return verify_all(
-      datasets, [](const fs::path& file) { io::Dataset(file).verify(); },
-      static_cast<std::size_t>(most));
+      datasets, [](const fs::path& file) { io::Dataset(file).verify(); }, at_once);
 }
 
 std::vector<std::string> verify_libraries(const std::vector<fs::path>& libraries) {

@@ -8,8 +8,10 @@
 
 #include "io/dataset/dataset.hpp"
 #include "io/dataset/dataset_header.hpp"
+#include "io/files/container.hpp"
 #include "io/files/error.hpp"
 #include "jobs/cli/command.hpp"
+#include "jobs/cli/container_info.hpp"
 #include "jobs/cli/datasets.hpp"
 #include "jobs/cli/json_output.hpp"
 #include "jobs/cli/output.hpp"
@@ -221,6 +223,8 @@ void print_summary(const nlohmann::json& d) {
 }
 
 int info(const InfoOptions& options) {
+  if (io::is_container_name(options.target) && std::filesystem::is_regular_file(options.target))
+    return print_container(options.target, options.json);
   const auto datasets = datasets_at(options.target);
   const bool archive = std::filesystem::is_directory(options.target);
   nlohmann::json all = nlohmann::json::array();
@@ -246,14 +250,18 @@ int info(const InfoOptions& options) {
 
 void add_info(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<InfoOptions>();
-  CLI::App* command = app.add_subcommand("info", "Say what a dataset or an archive holds");
+  CLI::App* command =
+      app.add_subcommand("info", "Say what a dataset, an archive or a container of scans holds");
   command->footer(
       "Examples:\n"
       "  semigeo info archive                            one line per dataset\n"
       "  semigeo info archive/scans/x.ply.vtkhdf         levels, scales, curvature ranges, "
       "features\n"
       "  semigeo info archive/scans/x.ply.vtkhdf --json  the same for programs\n");
-  command->add_option("target", options->target, "A dataset, or an archive")->required();
+  command
+      ->add_option("target", options->target,
+                   "A dataset, an archive, or a container of scans (.zip, .7z, .tar)")
+      ->required();
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options, &exit_code] { exit_code = info(*options); });
 }

@@ -95,7 +95,8 @@ void add_options(CLI::App* command, RecogniseOptions& options) {
   command
       ->add_option("scenes", options.inputs,
                    "Scans (" + io::scan_extensions(" ", " ") +
-                       ", each also .gz), datasets (.vtkhdf), folders")
+                       ", each also .gz, .bz2,\n.xz or .zst), datasets (.vtkhdf), and folders or "
+                       "containers\n(.zip, .7z, .tar, .tar.gz) of them")
       ->default_str("")
       ->required()
       ->configurable(false);

@@ -147,9 +147,10 @@ int find_and_run(const RunOptions& options, const std::string& effective_config)
 
 void add_options(CLI::App* command, RunOptions& options) {
   command
-      ->add_option(
-          "scans", options.inputs,
-          "Scans (" + io::scan_extensions(" ", " ") + ", each also .gz) and folders of them")
+      ->add_option("scans", options.inputs,
+                   "Scans (" + io::scan_extensions(" ", " ") +
+                       ", each also .gz, .bz2, .xz or\n"
+                       ".zst), folders and containers (.zip, .7z, .tar, .tar.gz) of them")
       ->default_str("")
       ->required()
       ->configurable(false);

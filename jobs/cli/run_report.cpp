@@ -134,11 +134,13 @@ void print_counts(const std::vector<const PlannedJob*>& plan) {
 
 void print_passed_over(const PassedOver& passed_over) {
   const std::string words = in_words(passed_over);
+  for (const std::string& note : passed_over.notes) print("passed over: ", note, "\n");
   if (!words.empty()) print("passed over: ", words, "\n");
 }
 
 void add_passed_over(nlohmann::json& document, const PassedOver& passed_over) {
   if (!passed_over.files.empty()) document["passed_over"] = passed_over.files;
+  if (!passed_over.notes.empty()) document["passed_over_notes"] = passed_over.notes;
 }
 
 namespace {

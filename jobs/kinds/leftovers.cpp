@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "io/dataset/xdmf.hpp"
+#include "io/files/container.hpp"
 #include "io/files/error.hpp"
 #include "jobs/archive/digest_cache.hpp"
 #include "jobs/archive/sources.hpp"
@@ -88,7 +89,8 @@ class Losses {
       Count& count = counts_[folder];
       ++(gone ? count.gone : count.left);
       if (!gone) continue;
-      for (fs::path at = scan.parent_path(); at != folder; at = at.parent_path()) below_.insert(at);
+      for (fs::path at = io::outer_file(scan).parent_path(); at != folder; at = at.parent_path())
+        below_.insert(at);
     }
   }
 
@@ -132,7 +134,7 @@ std::vector<fs::path> recorded_folders(const fs::path& archive) {
   std::set<fs::path> all;
   for (const Sources* sources : {&records.scans, &records.scenes})
     for (const auto& [name, scan] : sources->by_name())
-      if (!is_in(scan, own)) all.insert(scan.parent_path());
+      if (!is_in(scan, own)) all.insert(io::outer_file(scan).parent_path());
   std::vector<fs::path> folders;
   for (const fs::path& folder : all)  // a folder stands before those below it
     if (!is_in_any(folder, folders)) folders.push_back(folder);

@@ -68,8 +68,8 @@ class RecogniseKind final : public TypedJobKind<RecogniseJobData, RecogniseJobRe
     const int levels = recognise.parameters.levels;
     std::error_code error;
     Estimate estimate;
-    if (fs::exists(scene, error))
-      estimate = io::is_scan_name(scene) ? context.learned.of(scan_size(scene), levels, 1)
+    if (planned.member_bytes > 0 || fs::exists(scene, error))
+      estimate = io::is_scan_name(scene) ? context.learned.of(scan_size(planned), levels, 1)
                                          : estimate_of_dataset(scene, levels, context.learned);
     const auto library = static_cast<double>(fs::file_size(recognise.library, error));
     if (error) return estimate;

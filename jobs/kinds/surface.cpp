@@ -271,7 +271,7 @@ class SurfaceKind final : public TypedJobKind<SurfaceJobData, SurfaceJobResult> 
   Estimate estimate(const PlannedJob& planned, const EstimateContext& context) const override {
     const SurfaceJobData& surface = data(planned.job);
     if (surface.sidecar_only) return {};
-    return context.learned.of(scan_size(planned.job.input), surface.parameters.levels + 1, 1);
+    return context.learned.of(scan_size(planned), surface.parameters.levels + 1, 1);
   }
 
   std::uintmax_t bytes_to_read(const Job& job) const override {

@@ -62,8 +62,7 @@ class TripletsKind final : public TypedJobKind<TripletsJobData, TripletsJobResul
   Estimate estimate(const PlannedJob& planned, const EstimateContext& context) const override {
     const int levels = data(planned.job).parameters.levels;
     if (!planned.after.empty() && !context.plan[planned.after.front()].up_to_date)
-      return context.learned.of(scan_size(context.plan[planned.after.front()].job.input), levels,
-                                1);
+      return context.learned.of(scan_size(context.plan[planned.after.front()]), levels, 1);
     return estimate_of_dataset(planned.job.input, levels, context.learned);
   }
 

@@ -12,8 +12,16 @@ std::string_view state_of(const PlannedJob& planned) {
   return planned.up_to_date ? "up to date" : "would run";
 }
 
+ScanSize scan_size(const PlannedJob& planned) {
+  ScanSize size = scan_size(planned.job.input);
+  if (planned.member_bytes > 0) size.bytes = planned.member_bytes;
+  return size;
+}
+
 std::uintmax_t bytes_to_read(const PlannedJob& planned) {
-  return planned.up_to_date ? 0 : planned.job.kind->bytes_to_read(planned.job);
+  if (planned.up_to_date) return 0;
+  return planned.member_bytes > 0 ? planned.member_bytes
+                                  : planned.job.kind->bytes_to_read(planned.job);
 }
 
 void judge_output(PlannedJob& planned, KeyCheck check) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "jobs/archive/scan_size.hpp"
 #include "jobs/plan/job.hpp"
 #include "jobs/plan/reasons.hpp"
 
@@ -18,10 +19,11 @@ struct PlannedJob {
   std::vector<std::size_t> after = {};  ///< Places in the plan, before this one, of the jobs that
                                         ///< must have ended before this job may begin.
   bool up_to_date = false;
-  bool inputs_are_there = false;  ///< The key stands: inputs are not looked at again.
-  std::vector<Reason> reasons;    ///< Why the job runs; empty if it does not.
-  std::string error;              ///< Why the job cannot even be planned.
-  std::filesystem::path scan;     ///< Absolute path of the scan that the job reads, if any.
+  bool inputs_are_there = false;    ///< The key stands: inputs are not looked at again.
+  std::vector<Reason> reasons;      ///< Why the job runs; empty if it does not.
+  std::string error;                ///< Why the job cannot even be planned.
+  std::filesystem::path scan;       ///< Absolute path of the scan that the job reads, if any.
+  std::uintmax_t member_bytes = 0;  ///< Size of that scan if it is a member of a container.
 };
 
 /// Returns whether the inputs of the job could be looked at.
@@ -31,6 +33,9 @@ inline bool is_readable(const PlannedJob& planned) {
 
 /// Returns "up to date", "would run" or "unreadable".
 std::string_view state_of(const PlannedJob& planned);
+
+/// Returns the format and the size of the scan that is the job's input.
+ScanSize scan_size(const PlannedJob& planned);
 
 /// Returns the bytes of scans that the job is going to read.
 std::uintmax_t bytes_to_read(const PlannedJob& planned);

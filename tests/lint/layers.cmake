@@ -37,7 +37,8 @@ set(rules
 set(exceptions "io:engine/descriptor.hpp")
 
 # Libraries, each with the one folder or layer that may include its headers.
-set(libraries "tbb/:engine" "nanoflann:kernels" "hdf5.h:io/hdf5" "zlib.h:io" "libdeflate.h:io"
+set(libraries "tbb/:engine" "nanoflann:kernels" "hdf5.h:io/hdf5" "zlib.h:io" "archive.h:io/files"
+  "archive_entry.h:io/files" "libdeflate.h:io"
   "xxhash.h:io" "CLI/:jobs/cli")
 # Tests and benchmarks only: they make meshes that are none of ours.
 list(APPEND libraries "OpenMesh/:none")

@@ -10,6 +10,7 @@
 #include "engine/run_context.hpp"
 #include "io/files/file_digest.hpp"
 #include "jobs/stages/surface_job.hpp"
+#include "tests/support/containers.hpp"
 #include "tests/support/scan_file.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -77,6 +78,37 @@ TEST_F(DigestCacheTest, WhatHasNotChangedIsNotReadAgain) {
   forge(first_, forged_);
   EXPECT_EQ(run({scan_})[0].xxh3, forged_);
   EXPECT_EQ(run({scan_}, 7)[0].xxh3, forged_);
+}
+
+TEST_F(DigestCacheTest, MembersOfAContainerAreReadOnceAndRemembered) {
+  const auto members = [&] { return find_scans({folder_ / "box.tgz"}, folder_ / "none").scans; };
+  const auto digests_of = [&](const std::vector<FoundScan>& scans) {
+    DigestCache cache = DigestCache::read(folder_.path(), in_an_hour);
+    const auto digests = cache.scan_digests(scans, 1);
+    cache.write();
+    return digests;
+  };
+  const auto write = [&](const std::string& second) {
+    tests::write_container(
+        folder_ / "box.tgz", "pax",
+        {{.name = "a.ply", .bytes = "first"}, {.name = "b.ply", .bytes = second}}, "gzip");
+  };
+  write("second");
+  const auto digests = digests_of(members());
+  ASSERT_EQ(digests.size(), 2u);
+  EXPECT_EQ(digests[0].xxh3, first_);
+  EXPECT_EQ(digests[1].xxh3, io::xxh3_of_text("second"));
+  forge(first_, forged_);
+  EXPECT_EQ(digests_of(members())[0].xxh3, forged_);
+  run({scan_});  // other scans do not make it forget
+  EXPECT_EQ(digests_of(members())[0].xxh3, forged_);
+  write("another");
+  const auto changed = digests_of(members());
+  EXPECT_EQ(changed[0].xxh3, first_);
+  EXPECT_EQ(changed[1].xxh3, io::xxh3_of_text("another"));
+  fs::remove(folder_ / "box.tgz");
+  run({scan_});
+  EXPECT_EQ(file().find("box.tgz"), std::string::npos) << file();
 }
 
 TEST_F(DigestCacheTest, WhatChangedAMomentAgoIsNotRemembered) {

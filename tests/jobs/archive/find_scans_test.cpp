@@ -8,6 +8,7 @@
 #include <set>
 
 #include "io/files/error.hpp"
+#include "tests/support/containers.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace semigeo::jobs {
@@ -125,6 +126,69 @@ TEST_F(FindScansTest, CountsWhatItPassesOver) {
     EXPECT_EQ(in_words(passed_over), "3 .jpg, 1 .mtl, 2 other");
   }
   EXPECT_EQ(in_words({}), "");
+}
+
+TEST_F(FindScansTest, ContainersAreSearchedLikeFolders) {
+  fs::create_directories(folder_ / "in/sub");
+  const fs::path box = tests::write_container(folder_ / "in/sub/box.zip", "zip",
+                                              {{.name = "part/b.ply", .bytes = "1"},
+                                               {.name = "part/a.obj.xz", .bytes = "22"},
+                                               {.name = "../../out.ply", .bytes = "3"},
+                                               {.name = "t.jpg", .bytes = "4"},
+                                               {.name = "inner.zip", .bytes = "5"},
+                                               {.name = "__MACOSX/._a.ply", .bytes = "6"},
+                                               {.name = "out.ply", .bytes = "7"}});
+  tests::write_container(folder_ / "in/a.tgz", "pax",
+                         {{.name = "x.ply"}, {.name = "y.ply", .link = "x.ply"}}, "gzip");
+  add("in/z.ply");
+  EXPECT_EQ(names({folder_ / "in"}),
+            (Names{"a.tgz__x.ply", "sub__box.zip__out.ply", "sub__box.zip__part__a.obj.xz",
+                   "sub__box.zip__part__b.ply", "z.ply"}));
+  const FoundScans found = find_scans({box, folder_ / "in"}, folder_ / "archive");
+  EXPECT_EQ(found.scans.size(), 5u);
+  const FoundScan& scan = found.scans.at(2);
+  EXPECT_EQ(scan.input, box / "part/b.ply");
+  EXPECT_EQ(scan.relative, "box.zip/part/b.ply");
+  EXPECT_EQ(scan.file, fs::canonical(box) / "part/b.ply");
+  EXPECT_EQ(scan.container, box);
+  EXPECT_EQ(scan.bytes, 1u);
+  EXPECT_EQ(in_words(found.passed_over), "1 .jpg, 1 .zip, 1 links in containers");
+  ASSERT_EQ(found.passed_over.notes.size(), 2u);
+  EXPECT_EQ(found.passed_over.notes[0],
+            (box / "inner.zip").string() + ": a container in a container is not opened; unpack it");
+  EXPECT_NE(found.passed_over.notes[1].find("1 members have the name"), std::string::npos);
+}
+
+TEST_F(FindScansTest, InputsMayLeadThroughContainers) {
+  const fs::path box = tests::write_container(
+      folder_ / "box.tar", "pax", {{.name = "a/x.ply"}, {.name = "a/y.ply"}, {.name = "ab/z.ply"}});
+  EXPECT_EQ(names({box / "a/x.ply"}), Names{"box.tar__a__x.ply"});
+  EXPECT_EQ(names({box / "a"}), (Names{"box.tar__a__x.ply", "box.tar__a__y.ply"}));
+  EXPECT_EQ(names({box / "ab", box / "a/y.ply", box}),
+            (Names{"box.tar__ab__z.ply", "box.tar__a__y.ply", "box.tar__a__x.ply"}));
+  EXPECT_THROW(find({box / "b"}), io::Error);
+  EXPECT_THROW(find({box / "a/x"}), io::Error);
+}
+
+TEST_F(FindScansTest, ADamagedContainerHarmsNoOther) {
+  add("in/z.ply");
+  std::ofstream(folder_ / "in/bad.zip") << "<html>not found</html>";
+  const std::string bytes(5000, 'x');
+  const fs::path cut = tests::write_container(
+      folder_ / "in/cut.tar", "pax",
+      {{.name = "a.ply", .bytes = bytes}, {.name = "b.ply", .bytes = bytes}});
+  fs::resize_file(cut, 10'000);
+  tests::write_container(folder_ / "in/secret.zip", "zip", {{.name = "s.ply", .bytes = "1"}}, "",
+                         "zip:encryption=aes256", "password");
+  const auto found = find({folder_ / "in"});
+  ASSERT_EQ(found.size(), 6u);
+  EXPECT_NE(found[0].error.find("bad.zip: the file is a web page"), std::string::npos);
+  EXPECT_EQ(found[1].name, "cut.tar__a.ply");
+  EXPECT_EQ(found[1].error, "");
+  EXPECT_EQ(found[2].name, "cut.tar__b.ply");
+  EXPECT_NE(found[3].error.find("cut.tar: "), std::string::npos) << found[3].error;
+  EXPECT_NE(found[4].error.find("s.ply: is encrypted"), std::string::npos) << found[4].error;
+  EXPECT_EQ(found[5].name, "z.ply");
 }
 
 TEST(PassedOverTest, NamesTheMostFrequentKinds) {

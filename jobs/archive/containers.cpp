@@ -1,0 +1,129 @@
+#include "jobs/archive/containers.hpp"
+
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "io/files/error.hpp"
+#include "io/files/file_digest.hpp"
+#include "jobs/archive/in_children.hpp"
+#include "jobs/archive/path_text.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// Returns the CPU seconds that one pass over a container may take: far more than it usually does.
+double most_seconds(const fs::path& container) {
+  constexpr double kLeast = 600;
+  constexpr double kBytesPerSecond = 1e6;
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(container, error);
+  return kLeast + (error ? 0 : static_cast<double>(bytes) / kBytesPerSecond);
+}
+
+/// Returns why a child that read a container has ended without an answer.
+std::string problem_of(const fs::path& container, const engine::ForkedResult& result) {
+  return io::Error(container, "",
+                   result.signal == SIGXCPU ? "it is damaged so that reading it never ends"
+                                            : "it is damaged so that reading it crashes",
+                   "copy it again from its source, or unpack it and give the scans")
+      .what();
+}
+
+std::string text_of(const io::ContainerListing& listing) {
+  json members = json::array();
+  for (const io::Member& member : listing.members)
+    members.push_back({escaped(member.name), member.bytes, member.encrypted});
+  return json{{"members", members},
+              {"links", listing.links},
+              {"repeated", listing.repeated},
+              {"error", escaped(listing.error)}}
+      .dump();
+}
+
+io::ContainerListing listing_from(const std::string& text) {
+  const json document = json::parse(text);
+  io::ContainerListing listing;
+  for (const json& member : document.at("members"))
+    listing.members.push_back({.name = unescaped(member.at(0).get<std::string>()),
+                               .bytes = member.at(1).get<std::int64_t>(),
+                               .encrypted = member.at(2).get<bool>()});
+  document.at("links").get_to(listing.links);
+  document.at("repeated").get_to(listing.repeated);
+  listing.error = unescaped(document.at("error").get<std::string>());
+  return listing;
+}
+
+/// Returns the digests of members as JSON: name, digest, error.
+std::string digest_text(const WantedMembers& wanted) {
+  std::set<std::string> names(wanted.names.begin(), wanted.names.end());
+  json digests = json::array();
+  const auto add = [&](const std::string& name, const std::string& xxh3, const std::string& error) {
+    digests.push_back({escaped(name), xxh3, escaped(error)});
+  };
+  try {
+    io::ContainerReader reader(wanted.container);
+    while (!names.empty() && reader.next()) {
+      if (reader.kind() != io::ContainerReader::Kind::kFile || names.erase(reader.name()) == 0)
+        continue;
+      try {
+        add(reader.name(), io::xxh3_of_stream(reader), "");
+      } catch (const io::Error& error) {
+        add(reader.name(), "", error.what());
+      }
+    }
+    for (const std::string& name : names)
+      add(name, "", io::Error(wanted.container / name, "", "is gone", "run again").what());
+  } catch (const io::Error& error) {
+    for (const std::string& name : names) add(name, "", error.what());
+  }
+  return digests.dump();
+}
+
+}  // namespace
+
+bool is_hidden_member(const std::string& name) {
+  return name.starts_with('.') || name.find("/.") != std::string::npos;
+}
+
+std::vector<io::ContainerListing> list_containers(const std::vector<fs::path>& containers) {
+  const auto results = in_children(
+      containers.size(), 0,
+      [&](std::size_t i) { return text_of(io::list_container(containers[i])); },
+      [&](std::size_t i) { return most_seconds(containers[i]); });
+  std::vector<io::ContainerListing> listings(containers.size());
+  for (std::size_t i = 0; i < listings.size(); ++i) {
+    if (results[i].exit_code == 0) {
+      listings[i] = listing_from(results[i].text);
+    } else {
+      listings[i].error = problem_of(containers[i], results[i]);
+    }
+  }
+  return listings;
+}
+
+std::vector<std::map<std::string, ScanDigest>> digests_of_members(
+    const std::vector<WantedMembers>& wanted, int at_once) {
+  const auto results = in_children(
+      wanted.size(), at_once, [&](std::size_t i) { return digest_text(wanted[i]); },
+      [&](std::size_t i) { return most_seconds(wanted[i].container); });
+  std::vector<std::map<std::string, ScanDigest>> digests(wanted.size());
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (results[i].exit_code == 0) {
+      for (const json& member : json::parse(results[i].text))
+        digests[i][unescaped(member.at(0).get<std::string>())] = {
+            .xxh3 = member.at(1).get<std::string>(),
+            .error = unescaped(member.at(2).get<std::string>())};
+      continue;
+    }
+    const std::string problem = problem_of(wanted[i].container, results[i]);
+    for (const std::string& name : wanted[i].names)
+      digests[i][name] = {.xxh3 = "", .error = problem};
+  }
+  return digests;
+}
+
+}  // namespace semigeo::jobs
