@@ -52,10 +52,13 @@ Descriptor open_log(const Command& command) {
   return log;
 }
 
+/// Returns the CPU time that the limit on it counts, which is in ticks of the clock. On a busy
+/// machine it differs from the exact time of clock_getcpuclockid by any factor.
 double cpu_seconds_of(pid_t process) {
-  clockid_t clock;
+  // The kernel composes the number of this clock of the process and of CPUCLOCK_PROF, which is 0.
+  const auto clock = static_cast<clockid_t>(~static_cast<unsigned>(process) << 3);
   timespec time = {};
-  if (clock_getcpuclockid(process, &clock) != 0 || clock_gettime(clock, &time) != 0) return 0;
+  if (clock_gettime(clock, &time) != 0) return 0;
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
