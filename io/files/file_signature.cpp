@@ -46,7 +46,7 @@ constexpr std::array kRows = {
     Row{"%PDF-"sv, {"a PDF document", kFindScan, ""}},
     Row{"ASTM-E57"sv, {"an E57 point cloud", kMeshIt, ""}},
     Row{"LASF"sv, {"a LAS point cloud", kMeshIt, ""}},
-    Row{"glTF"sv, {"a binary glTF model", kExportIt, ""}},
+    Row{"glTF"sv, {"a binary glTF file", "correct its extension to .glb", ".glb"}},
     Row{"Kaydara FBX Binary"sv, {"an FBX model", kExportIt, ""}},
     Row{"\x89HDF\r\n\x1a\n"sv, {"an HDF5 file", kExportIt, ""}},
     Row{"ply\n"sv, {"a PLY file", "correct its extension to .ply", ".ply"}},

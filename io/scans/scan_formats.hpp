@@ -27,9 +27,11 @@ extern const ScanFormat kOffFormat;
 extern const ScanFormat kStlFormat;
 extern const ScanFormat kPcdFormat;
 extern const ScanFormat kPtxFormat;
+extern const ScanFormat kGltfFormat;
+extern const ScanFormat kGlbFormat;
 
 /// The formats that the program reads, in the order in which messages name them.
-inline constexpr std::array kScanFormats = {&kPlyFormat, &kObjFormat, &kOffFormat,
-                                            &kStlFormat, &kPcdFormat, &kPtxFormat};
+inline constexpr std::array kScanFormats = {&kPlyFormat, &kObjFormat, &kOffFormat,  &kStlFormat,
+                                            &kPcdFormat, &kPtxFormat, &kGltfFormat, &kGlbFormat};
 
 }  // namespace semigeo::io

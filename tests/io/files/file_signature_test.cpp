@@ -65,6 +65,7 @@ TEST(FileSignatureTest, KnowsScans) {
   EXPECT_EQ(file_signature("ply\r\nformat ascii 1.0").value().extension, ".ply");
   EXPECT_EQ(file_signature("solid cube\n").value().extension, ".stl");
   EXPECT_EQ(file_signature("OFF\n3 1 0").value().extension, ".off");
+  EXPECT_EQ(file_signature("glTF\2").value().extension, ".glb");
 }
 
 TEST(FileSignatureTest, SaysNothingOfOtherBytes) {

@@ -6,7 +6,7 @@
 #include <ostream>
 #include <random>
 
-#include "tests/io/scans/scan_files.hpp"
+#include "tests/io/scans/gltf_files.hpp"
 
 namespace {
 // Far above what files of some kilobytes need (the window takes 1 MiB), far below what the numbers
@@ -153,6 +153,23 @@ Seed ptx() {
   return {"a.ptx", text};
 }
 
+/// Two instances of a mesh of three primitives: indexed, a strip with sparse elements, points.
+GltfParts gltf_parts() {
+  GltfParts parts = square_parts();
+  const int places = parts.add_view(bytes_of_all(std::vector<std::uint16_t>{1, 2}));
+  const int values = parts.add_view(bytes_of_all(std::vector<std::int8_t>{1, 2, 3, 4, 5, 6}));
+  const std::string sparse =
+      R"(,"sparse":{"count":2,"indices":{"componentType":5123,"bufferView":)" +
+      std::to_string(places) + R"(},"values":{"bufferView":)" + std::to_string(values) + "}}";
+  const std::vector<std::int8_t> quantised = {0, 0, 0, 9, 0, 0, 9, 9, 0, 0, 9, 0};
+  const int strip = parts.add_numbers(5120, "VEC3", quantised, R"(,"normalized":true)" + sparse);
+  parts.add_primitive(strip, -1, 5);
+  parts.add_primitive(0, -1, 0);
+  parts.nodes = R"({"children":[1,2],"rotation":[0,0,1,0]},{"mesh":0,"translation":[1,2,3]},)"
+                R"({"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,-1,0,5,6,7,1]})";
+  return parts;
+}
+
 std::vector<Seed> plain_seeds() {
   std::string facets = "solid a b\n";
   for (int i = 0; i < 4; ++i)
@@ -177,7 +194,9 @@ std::vector<Seed> plain_seeds() {
           pcd("ascii"),
           pcd("binary"),
           pcd("binary_compressed"),
-          ptx()};
+          ptx(),
+          {"a.gltf", gltf_parts().gltf()},
+          {"a.glb", gltf_parts().glb()}};
 }
 
 std::vector<Seed> seeds() {

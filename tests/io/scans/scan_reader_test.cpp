@@ -12,7 +12,8 @@ using ScanReader = ScanFileTest;
 const std::string kObj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf 1 2 3\n";
 
 TEST(ScanFormatTest, IsDecidedByTheName) {
-  for (const char* name : {"a.ply", "x/y.b/a b.OBJ", "a.Off.gz", "a.ply.stl.GZ", "a.pcd", "a.PTX"})
+  for (const char* name : {"a.ply", "x/y.b/a b.OBJ", "a.Off.gz", "a.ply.stl.GZ", "a.pcd", "a.PTX",
+                           "a.gltf", "a.GLB.gz"})
     EXPECT_TRUE(is_scan_name(name)) << name;
   for (const char* name :
        {"a", "a.gz", "ply", ".ply", "a.plyx", "a.ply.zip", "a.ply.gz.gz", "", "a.ply/b"})
@@ -20,8 +21,8 @@ TEST(ScanFormatTest, IsDecidedByTheName) {
 }
 
 TEST(ScanFormatTest, ExtensionsAreListedInWords) {
-  EXPECT_EQ(scan_extensions(", ", " and "), ".ply, .obj, .off, .stl, .pcd and .ptx");
-  EXPECT_EQ(scan_extensions(" ", " "), ".ply .obj .off .stl .pcd .ptx");
+  EXPECT_EQ(scan_extensions(", ", " and "), ".ply, .obj, .off, .stl, .pcd, .ptx, .gltf and .glb");
+  EXPECT_EQ(scan_extensions(" ", " "), ".ply .obj .off .stl .pcd .ptx .gltf .glb");
 }
 
 TEST_F(ScanReader, ReadsCompressedFiles) {

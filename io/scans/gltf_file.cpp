@@ -1,0 +1,286 @@
+#include "io/scans/gltf_file.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "io/files/binary_load.hpp"
+#include "io/files/error.hpp"
+#include "io/files/printable.hpp"
+#include "io/scans/base64.hpp"
+#include "io/scans/whole_source.hpp"
+
+namespace semigeo::io {
+namespace {
+
+constexpr std::string_view kMagic = "glTF";
+constexpr std::int64_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
+constexpr const char* kExportAgain = "copy the file again from its source or export it again";
+constexpr const char* kMeshopt = "EXT_meshopt_compression";
+
+std::int64_t load_u32(std::string_view bytes, std::int64_t at) {
+  return load<std::uint32_t>(bytes.data() + at, std::endian::little);
+}
+
+/// Returns whether an extension that the file requires changes nothing about the surface.
+bool is_harmless(std::string_view extension) {
+  if (extension == "KHR_mesh_quantization") return true;
+  for (const std::string_view start :
+       {"KHR_materials_", "KHR_texture_", "KHR_lights_", "KHR_xmp", "KHR_animation_",
+        "EXT_texture_", "EXT_lights_", "MSFT_texture_", "ADOBE_materials_", "AGI_stk_",
+        "MSFT_packing_"})
+    if (extension.starts_with(start)) return true;
+  return false;
+}
+
+}  // namespace
+
+GltfFile::GltfFile(ByteSource& source) : path_(source.path()) {
+  source.fill(kHeaderBytes);
+  binary_ = source.ahead().starts_with(kMagic);
+  if (binary_) {
+    parse(read_binary(source));
+  } else {
+    const std::string text = read_whole(source);
+    file_bytes_ = std::ssize(text);
+    parse(text);
+  }
+  decoded_.resize(static_cast<std::size_t>(root().size("buffers")));
+  check_extensions();
+}
+
+GltfFile::~GltfFile() = default;
+
+GltfObject GltfFile::root() const {
+  return {path_, *json_, ""};
+}
+
+/// Returns the chunk of JSON.
+std::string_view GltfFile::read_binary(ByteSource& source) {
+  const auto fail = [&](std::int64_t at, const std::string& problem) {
+    throw Error(path_, source.place(at), problem, kExportAgain);
+  };
+  if (!source.fill(kHeaderBytes)) fail(4, "the file ends in its header");
+  const std::int64_t version = load_u32(source.ahead(), 4), length = load_u32(source.ahead(), 8);
+  if (version != 2)
+    throw Error(path_, source.place(4),
+                "glTF of version " + std::to_string(version) + " is not supported",
+                "export the scan as glTF 2.0");
+  bytes_ = read_whole(source, length);
+  file_bytes_ = std::ssize(bytes_);
+  if (file_bytes_ < length)
+    fail(file_bytes_, "the header promises " + std::to_string(length) +
+                          " bytes, but the file ends after " + std::to_string(file_bytes_));
+  std::string_view json;
+  for (std::int64_t at = kHeaderBytes; at + kChunkHeaderBytes <= length;) {
+    const std::int64_t size = load_u32(bytes_, at), type = load_u32(bytes_, at + 4);
+    const std::int64_t begin = at + kChunkHeaderBytes;
+    if (size > length - begin) fail(at, "a chunk reaches beyond the end of the file");
+    const auto chunk = std::string_view(bytes_).substr(static_cast<std::size_t>(begin),
+                                                       static_cast<std::size_t>(size));
+    if (at == kHeaderBytes && type != kJsonChunk) fail(at, "the first chunk is not JSON");
+    if (at == kHeaderBytes) json = chunk;
+    if (type == kBinaryChunk && chunk_.data() == nullptr) chunk_ = chunk;
+    at = begin + size;
+  }
+  if (json.empty()) fail(kHeaderBytes, "there is no JSON in the file");
+  return json;
+}
+
+void GltfFile::parse(std::string_view text) {
+  try {
+    json_ = std::make_unique<nlohmann::json>(nlohmann::json::parse(text));
+  } catch (const nlohmann::json::parse_error& error) {
+    throw Error(path_, "byte " + std::to_string(error.byte) + (binary_ ? " of its JSON" : ""),
+                "the JSON of the file is damaged", kExportAgain);
+  } catch (const nlohmann::json::out_of_range&) {  // a number such as 1e999
+    throw Error(path_, "", "the JSON of the file has a number that is too large", kExportAgain);
+  }
+  if (!json_->is_object() || !json_->contains("asset"))
+    throw Error(path_, "", "this is no glTF file: its JSON has no 'asset'",
+                "correct its extension or export the scan again");
+  const std::string_view version = root().object("asset").text("version").value_or("");
+  if (!version.starts_with("2."))
+    root().object("asset").fail(
+        "glTF of version " + printable(std::string(version)) + " is not supported",
+        "export the scan as glTF 2.0");
+}
+
+void GltfFile::check_extensions() const {
+  for (std::int64_t i = 0; i < root().size("extensionsRequired"); ++i) {
+    const std::string extension = root().text("extensionsRequired", i);
+    if (extension == kMeshopt)
+      throw Error(path_, "", "its meshes are compressed by meshopt, which is not supported",
+                  "export the scan without compression (EXT_meshopt_compression)");
+    if (extension == "KHR_draco_mesh_compression")
+      throw Error(path_, "", "its meshes are compressed by Draco, which is not supported",
+                  "export the scan without compression (KHR_draco_mesh_compression)");
+    if (!is_harmless(extension))
+      throw Error(
+          path_, "",
+          "it requires the extension '" + printable(extension) + "', which is not supported",
+          "export the scan without this extension");
+  }
+}
+
+std::string GltfFile::decode_uri(const GltfObject& buffer, std::string_view uri) const {
+  if (!uri.starts_with("data:")) {
+    const bool remote = uri.find("://") != std::string_view::npos;
+    buffer.fail(std::string("its bytes stand in another file") + (remote ? " on the network" : "") +
+                    ": '" + printable(std::string(uri.substr(0, 200))) + "'",
+                "convert the scan to .glb, which is one file (in Blender or with gltf-transform)");
+  }
+  const std::size_t comma = uri.find(',');
+  if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64"))
+    buffer.fail("its data is not in Base64", kExportAgain);
+  Base64Decoder decoder(uri.substr(comma + 1));
+  std::string bytes;
+  decoder.read(uri.size(), bytes);
+  if (!decoder.at_end()) buffer.fail("its Base64 data is damaged", kExportAgain);
+  return bytes;
+}
+
+std::string_view GltfFile::buffer(std::int64_t index) {
+  const GltfObject buffer = root().item("buffers", index);
+  const std::optional<std::string_view> uri = buffer.text("uri");
+  std::string_view bytes;
+  if (uri) {
+    auto& decoded = decoded_[static_cast<std::size_t>(index)];
+    if (!decoded) decoded = decode_uri(buffer, *uri);
+    bytes = *decoded;
+  } else {
+    if (index != 0 || chunk_.data() == nullptr) buffer.fail("it has no bytes", kExportAgain);
+    bytes = chunk_;
+  }
+  const std::int64_t length = buffer.integer("byteLength");
+  if (length > std::ssize(bytes))
+    buffer.fail("it promises " + std::to_string(length) + " bytes, but has only " +
+                    std::to_string(bytes.size()),
+                kExportAgain);
+  return bytes.substr(0, static_cast<std::size_t>(length));
+}
+
+void GltfFile::locate(const GltfObject& owner, Elements& elements) {
+  const GltfObject view = root().item("bufferViews", owner.integer("bufferView"));
+  if (view.has("extensions") && view.object("extensions").has(kMeshopt))
+    view.fail("it is compressed by meshopt, which is not supported",
+              "export the scan without compression (EXT_meshopt_compression)");
+  const std::string_view bytes = buffer(view.integer("buffer"));
+  const std::int64_t view_offset = view.integer("byteOffset", 0);
+  const std::int64_t length = view.integer("byteLength");
+  if (view_offset > std::ssize(bytes) || length > std::ssize(bytes) - view_offset)
+    view.fail("it reaches beyond the end of its buffer", kExportAgain);
+  const std::int64_t element_bytes = component_bytes(elements.type) * elements.components;
+  elements.stride = view.integer("byteStride", element_bytes);
+  if (elements.stride < element_bytes)
+    view.fail("its byteStride is smaller than an element", kExportAgain);
+  const std::int64_t offset = owner.integer("byteOffset", 0);
+  const std::int64_t room = length - offset - element_bytes;
+  if (elements.count > 0 && (room < 0 || (elements.count - 1) > room / elements.stride))
+    owner.fail("its " + std::to_string(elements.count) +
+                   " elements reach beyond the end of their bufferView",
+               kExportAgain);
+  if (elements.count > 0) elements.data = bytes.data() + view_offset + offset;
+}
+
+std::int64_t GltfFile::component_bytes(Type type) {
+  if (type == Type::kByte || type == Type::kUnsignedByte) return 1;
+  return type == Type::kShort || type == Type::kUnsignedShort ? 2 : 4;
+}
+
+template <typename Number>
+Number GltfFile::load_component(const Elements& elements, const char* from) {
+  const auto scaled = [&](auto number, double largest) {
+    if (!elements.normalized) return static_cast<Number>(number);
+    return static_cast<Number>(std::max(static_cast<double>(number) / largest, -1.0));
+  };
+  constexpr std::endian kOrder = std::endian::little;
+  switch (elements.type) {
+    case Type::kByte:
+      return scaled(load<std::int8_t>(from, kOrder), 127);
+    case Type::kUnsignedByte:
+      return scaled(load<std::uint8_t>(from, kOrder), 255);
+    case Type::kShort:
+      return scaled(load<std::int16_t>(from, kOrder), 32'767);
+    case Type::kUnsignedShort:
+      return scaled(load<std::uint16_t>(from, kOrder), 65'535);
+    case Type::kUnsignedInt:
+      return static_cast<Number>(load<std::uint32_t>(from, kOrder));
+    case Type::kFloat:
+      return static_cast<Number>(load<float>(from, kOrder));
+  }
+  return 0;
+}
+
+template <typename Number>
+void GltfFile::copy(const Elements& elements, Number* to) {
+  for (std::int64_t i = 0; i < elements.count; ++i) {
+    const char* const from = elements.data + i * elements.stride;
+    for (std::int64_t k = 0; k < elements.components; ++k)
+      *to++ = load_component<Number>(elements, from + k * component_bytes(elements.type));
+  }
+}
+
+template <typename Number>
+std::vector<Number> GltfFile::read(const GltfObject& accessor, Elements elements) {
+  elements.count = accessor.integer("count");
+  if (accessor.has("bufferView")) {
+    locate(accessor, elements);
+  } else if (elements.count > file_bytes_) {
+    accessor.fail("it has more elements than the file has bytes", kExportAgain);
+  }
+  std::vector<Number> numbers(static_cast<std::size_t>(elements.count * elements.components));
+  if (accessor.has("bufferView")) copy(elements, numbers.data());
+  if (accessor.has("sparse")) replace_sparse(accessor.object("sparse"), elements, numbers);
+  return numbers;
+}
+
+template <typename Number>
+void GltfFile::replace_sparse(const GltfObject& sparse, const Elements& all,
+                              std::vector<Number>& numbers) {
+  const GltfObject places = sparse.object("indices"), values = sparse.object("values");
+  Elements index{.count = sparse.integer("count"), .type = index_type(places)};
+  locate(places, index);
+  Elements value = all;
+  value.count = index.count;
+  locate(values, value);
+  std::vector<std::uint32_t> indices(static_cast<std::size_t>(index.count));
+  copy(index, indices.data());
+  for (std::int64_t i = 0; i < index.count; ++i) {
+    if (indices[i] >= all.count)
+      places.fail(
+          "it refers to element " + std::to_string(indices[i]) + " of " + std::to_string(all.count),
+          kExportAgain);
+    Elements one = value;
+    one.count = 1;
+    one.data += i * value.stride;
+    copy(one, numbers.data() + indices[i] * all.components);
+  }
+}
+
+GltfFile::Type GltfFile::index_type(const GltfObject& owner) {
+  const auto type = static_cast<Type>(owner.integer("componentType"));
+  if (type != Type::kUnsignedByte && type != Type::kUnsignedShort && type != Type::kUnsignedInt)
+    owner.fail("its componentType is not one of indices", kExportAgain);
+  return type;
+}
+
+std::vector<double> GltfFile::positions(std::int64_t accessor) {
+  const GltfObject object = root().item("accessors", accessor);
+  const std::int64_t type = object.integer("componentType");
+  if (object.text("type") != "VEC3" || type < 5120 || type > 5126 || type == 5124 || type == 5125)
+    object.fail("its type is not one of positions", kExportAgain);
+  return read<double>(
+      object,
+      {.components = 3, .type = static_cast<Type>(type), .normalized = object.flag("normalized")});
+}
+
+std::vector<std::uint32_t> GltfFile::indices(std::int64_t accessor) {
+  const GltfObject object = root().item("accessors", accessor);
+  if (object.text("type") != "SCALAR") object.fail("its type is not one of indices", kExportAgain);
+  return read<std::uint32_t>(object, {.type = index_type(object)});
+}
+
+}  // namespace semigeo::io

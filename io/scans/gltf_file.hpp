@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/files/byte_source.hpp"
+#include "io/scans/gltf_json.hpp"
+
+namespace semigeo::io {
+
+/// A glTF 2.0 file in memory: JSON, or binary (.glb) with JSON and a chunk of bytes in it. Gives
+/// the elements of its accessors. Everything is checked before it is read or reserved, and what is
+/// wrong is an Error that names the object of the JSON.
+class GltfFile {
+ public:
+  /// Reads the source to its end, or a binary file to the end that it declares.
+  explicit GltfFile(ByteSource& source);
+  ~GltfFile();
+  GltfFile(const GltfFile&) = delete;
+  GltfFile& operator=(const GltfFile&) = delete;
+
+  /// Returns whether the file is binary glTF.
+  bool is_binary() const { return binary_; }
+  /// Returns the whole of the JSON.
+  GltfObject root() const;
+  /// Returns the coordinates of an accessor of positions, three for each.
+  std::vector<double> positions(std::int64_t accessor);
+  /// Returns the numbers of an accessor of indices.
+  std::vector<std::uint32_t> indices(std::int64_t accessor);
+
+ private:
+  /// The types of components, by their numbers in the file.
+  enum class Type : std::int64_t {
+    kByte = 5120,
+    kUnsignedByte = 5121,
+    kShort = 5122,
+    kUnsignedShort = 5123,
+    kUnsignedInt = 5125,
+    kFloat = 5126
+  };
+  /// Numbers that follow each other in a buffer with a constant stride.
+  struct Elements {
+    const char* data = nullptr;
+    std::int64_t count = 0;
+    std::int64_t stride = 0;
+    std::int64_t components = 1;
+    Type type = Type::kFloat;
+    bool normalized = false;
+  };
+
+  std::string_view read_binary(ByteSource& source);
+  void parse(std::string_view text);
+  void check_extensions() const;
+  std::string_view buffer(std::int64_t index);
+  std::string decode_uri(const GltfObject& buffer, std::string_view uri) const;
+  /// Finds the elements in the bufferView that `owner`, an accessor or a part of one, refers to.
+  void locate(const GltfObject& owner, Elements& elements);
+  template <typename Number>
+  std::vector<Number> read(const GltfObject& accessor, Elements elements);
+  template <typename Number>
+  void replace_sparse(const GltfObject& sparse, const Elements& all, std::vector<Number>& numbers);
+  template <typename Number>
+  static void copy(const Elements& elements, Number* to);
+  template <typename Number>
+  static Number load_component(const Elements& elements, const char* from);
+  static std::int64_t component_bytes(Type type);
+  /// Returns the type of the owner's components, which must be one of indices.
+  static Type index_type(const GltfObject& owner);
+
+  std::filesystem::path path_;
+  std::string bytes_;       // of a binary file
+  std::string_view chunk_;  // its binary chunk
+  std::int64_t file_bytes_ = 0;
+  bool binary_ = false;
+  std::unique_ptr<nlohmann::json> json_;
+  std::vector<std::optional<std::string>> decoded_;  // buffers that were in the JSON, if used
+};
+
+}  // namespace semigeo::io

@@ -1,0 +1,230 @@
+#include <Eigen/Geometry>
+#include <array>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/scans/gltf_file.hpp"
+#include "io/scans/scan_builder.hpp"
+#include "io/scans/scan_formats.hpp"
+
+namespace semigeo::io {
+namespace {
+
+constexpr const char* kExportAgain = "export the scan again";
+
+/// The numbers of a primitive's mode.
+enum Mode : std::int64_t {
+  kPoints = 0,
+  kLines = 1,
+  kLineLoop = 2,
+  kLineStrip = 3,
+  kTriangles = 4,
+  kTriangleStrip = 5,
+  kTriangleFan = 6
+};
+
+/// A node that is to be read, in the coordinates of the scene.
+struct Visit {
+  std::int64_t node = 0;
+  Eigen::Affine3d to_scene = Eigen::Affine3d::Identity();
+};
+
+/// Returns the transformation from a node's coordinates to those of its parent.
+Eigen::Affine3d transform_of(const GltfObject& node) {
+  Eigen::Affine3d transform = Eigen::Affine3d::Identity();
+  if (const auto matrix = node.numbers<16>("matrix")) {
+    transform.matrix() = Eigen::Map<const Eigen::Matrix4d>(matrix->data());  // column after column
+    if (transform.matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1))
+      node.fail("its matrix is not an affine transformation", kExportAgain);
+    return transform;
+  }
+  if (const auto t = node.numbers<3>("translation"))
+    transform.translate(Eigen::Vector3d(t->data()));
+  if (const auto r = node.numbers<4>("rotation")) {
+    const Eigen::Quaterniond rotation((*r)[3], (*r)[0], (*r)[1], (*r)[2]);
+    if (!(rotation.norm() > 0)) node.fail("its rotation is not a unit quaternion", kExportAgain);
+    transform.rotate(rotation.normalized());
+  }
+  if (const auto s = node.numbers<3>("scale")) transform.scale(Eigen::Vector3d(s->data()));
+  return transform;
+}
+
+/// Reads the surface of a scene into a builder.
+class GltfScene {
+ public:
+  GltfScene(GltfFile& file, ScanBuilder& builder)
+      : file_(file), root_(file.root()), builder_(builder) {}
+
+  void read() {
+    if (root_.size("nodes") == 0) {  // a file of meshes only
+      for (std::int64_t i = 0; i < root_.size("meshes"); ++i) read_mesh(i, Visit{});
+      return;
+    }
+    visited_.resize(static_cast<std::size_t>(root_.size("nodes")));
+    for (const std::int64_t node : top_nodes()) read_tree(node);
+  }
+
+ private:
+  /// Returns the nodes of the default scene, or of all scenes if there is none, or all that are no
+  /// other's child if there are no scenes. Each is returned once.
+  std::vector<std::int64_t> top_nodes() const {
+    std::vector<std::int64_t> nodes;
+    std::vector<bool> passed_over(visited_.size(), false);
+    const auto add = [&](std::int64_t node) {
+      const bool known = node < std::ssize(passed_over);  // if it is not, reading it says so
+      if (known && passed_over[node]) return;
+      if (known) passed_over[node] = true;
+      nodes.push_back(node);
+    };
+    const std::int64_t scenes = root_.size("scenes");
+    const std::int64_t only = root_.integer("scene", scenes);
+    for (std::int64_t i = only < scenes ? only : 0; i < (only < scenes ? only + 1 : scenes); ++i) {
+      const GltfObject scene = root_.item("scenes", i);
+      for (std::int64_t k = 0; k < scene.size("nodes"); ++k) add(scene.index("nodes", k));
+    }
+    if (scenes > 0) return nodes;
+    for (std::int64_t i = 0; i < root_.size("nodes"); ++i) {
+      const GltfObject node = root_.item("nodes", i);
+      for (std::int64_t k = 0; k < node.size("children"); ++k)
+        if (const auto child = node.index("children", k); child < std::ssize(passed_over))
+          passed_over[child] = true;
+    }
+    for (std::int64_t i = 0; i < root_.size("nodes"); ++i) add(i);
+    if (nodes.empty()) root_.fail("its nodes form a cycle", kExportAgain);
+    return nodes;
+  }
+
+  /// Reads a node and all below it. The tree may have any depth.
+  void read_tree(std::int64_t top) {
+    std::vector<Visit> waiting = {{.node = top}};
+    while (!waiting.empty()) {
+      Visit visit = waiting.back();
+      waiting.pop_back();
+      const GltfObject node = root_.item("nodes", visit.node);
+      if (visited_[visit.node])
+        node.fail("it is reached twice, so the nodes do not form a tree", kExportAgain);
+      visited_[visit.node] = true;
+      visit.to_scene = visit.to_scene * transform_of(node);
+      if (node.has("mesh")) read_mesh(node.integer("mesh"), visit);
+      for (std::int64_t k = node.size("children"); k-- > 0;)
+        waiting.push_back({.node = node.index("children", k), .to_scene = visit.to_scene});
+    }
+  }
+
+  void read_mesh(std::int64_t index, const Visit& visit) {
+    const GltfObject mesh = root_.item("meshes", index);
+    mirrored_ = visit.to_scene.linear().determinant() < 0;
+    first_points_.clear();
+    for (std::int64_t i = 0; i < mesh.size("primitives"); ++i)
+      read_primitive(mesh.item("primitives", i), visit.to_scene);
+  }
+
+  void read_primitive(const GltfObject& primitive, const Eigen::Affine3d& to_scene) {
+    const GltfObject attributes = primitive.object("attributes");
+    if (!attributes.has("POSITION")) return;  // the format allows it, and nothing can be shown
+    const std::int64_t accessor = attributes.integer("POSITION");
+    const Points points = add_points(accessor, to_scene);
+    Corners corners{.first = points.first, .count = points.count};
+    if (primitive.has("indices")) {
+      corners.indices = file_.indices(primitive.integer("indices"));
+      corners.count = std::ssize(corners.indices);
+      for (const std::uint32_t index : corners.indices)
+        if (index >= points.count)
+          primitive.fail("a face refers to vertex " + std::to_string(index) + " of " +
+                             std::to_string(points.count),
+                         kExportAgain);
+    }
+    add_faces(primitive, corners);
+  }
+
+  /// Vertices of the scan that came from one accessor.
+  struct Points {
+    std::int64_t first = 0, count = 0;
+  };
+  /// The corners of a primitive, in its order.
+  struct Corners {
+    std::int64_t first = 0, count = 0;
+    std::vector<std::uint32_t> indices = {};  // none: the vertices one after the other
+    std::int64_t operator[](std::int64_t i) const {
+      return first + (indices.empty() ? i : indices[static_cast<std::size_t>(i)]);
+    }
+  };
+
+  /// Adds the vertices of an accessor. Primitives of a mesh that share them get the same ones.
+  Points add_points(std::int64_t accessor, const Eigen::Affine3d& to_scene) {
+    const auto known = first_points_.find(accessor);
+    if (known != first_points_.end()) return known->second;
+    const std::vector<double> xyz = file_.positions(accessor);
+    const Points points{builder_.point_count(), std::ssize(xyz) / 3};
+    for (std::size_t i = 0; i < xyz.size(); i += 3) {
+      const Eigen::Vector3d p = to_scene * Eigen::Vector3d(&xyz[i]);
+      builder_.add_point(p.x(), p.y(), p.z(), {Place::Unit::kVertex, builder_.point_count()});
+    }
+    return first_points_[accessor] = points;
+  }
+
+  void add_faces(const GltfObject& primitive, const Corners& corners) {
+    const std::int64_t mode = primitive.integer("mode", kTriangles), count = corners.count;
+    if (mode > kTriangleFan)
+      primitive.fail("its mode " + std::to_string(mode) + " is unknown", kExportAgain);
+    std::int64_t i = 0;
+    switch (static_cast<Mode>(mode)) {
+      case kTriangles:
+        for (; i + 2 < count; i += 3) add(corners[i], corners[i + 1], corners[i + 2]);
+        if (i < count) add_part(corners[i]);  // corners that make no triangle
+        break;
+      case kTriangleStrip:
+        for (; i + 2 < count; ++i) add(corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]);
+        break;
+      case kTriangleFan:
+        for (; i + 2 < count; ++i) add(corners[i + 1], corners[i + 2], corners[0]);
+        break;
+      case kPoints:
+        for (; i < count; ++i) add_part(corners[i]);
+        break;
+      case kLines:
+        for (; i + 1 < count; i += 2) add_part(corners[i]);
+        break;
+      case kLineLoop:
+      case kLineStrip:
+        for (; i + (mode == kLineStrip ? 1 : 0) < count; ++i) add_part(corners[i]);
+        break;
+    }
+  }
+
+  Place face_place() { return {Place::Unit::kFace, faces_++}; }
+  void add(std::int64_t a, std::int64_t b, std::int64_t c) {
+    if (mirrored_) std::swap(b, c);
+    builder_.add_face(std::array{a, b, c}, face_place());
+  }
+  /// Counts a point or a line, which is no face.
+  void add_part(std::int64_t corner) { builder_.add_face(std::array{corner}, face_place()); }
+
+  GltfFile& file_;
+  GltfObject root_;
+  ScanBuilder& builder_;
+  std::vector<bool> visited_;
+  std::map<std::int64_t, Points> first_points_;  // of the mesh that is being read, by accessor
+  bool mirrored_ = false;
+  std::int64_t faces_ = 0;
+};
+
+Scan read_gltf(ByteSource& source, const ScanOptions& options) {
+  GltfFile file(source);
+  ScanBuilder builder(source, options);
+  GltfScene(file, builder).read();
+  return builder.finish(file.is_binary() ? "glTF binary" : "glTF");
+}
+
+std::string variant_of(std::string_view begin) {
+  return begin.starts_with("glTF") ? "glTF binary" : "glTF";
+}
+
+}  // namespace
+
+const ScanFormat kGltfFormat = {.extension = ".gltf", .read = read_gltf, .variant = variant_of};
+const ScanFormat kGlbFormat = {.extension = ".glb", .read = read_gltf, .variant = variant_of};
+
+}  // namespace semigeo::io
