@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "io/files/error.hpp"
+#include "jobs/archive/dataset_files.hpp"
 #include "jobs/archive/utc_time.hpp"
 
 namespace semigeo::jobs {
@@ -67,15 +68,6 @@ class Reader {
   std::map<std::string, std::string> started_;  ///< Start of jobs that have not ended.
 };
 
-std::int64_t count_datasets(const fs::path& archive) {
-  std::int64_t count = 0;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(archive / "scans", error))
-    count +=
-        entry.path().extension() == ".vtkhdf" && !entry.path().filename().string().starts_with('.');
-  return count;
-}
-
 }  // namespace
 
 std::int64_t ArchiveStatus::left() const {
@@ -92,12 +84,19 @@ std::optional<double> ArchiveStatus::seconds_left() const {
   return seconds * std::max(0.0, all - read) / read;
 }
 
+const char* state_of(const ArchiveStatus& status) {
+  if (!status.last_run) return status.owner ? "starting" : "never run";
+  if (status.is_running()) return "running";
+  if (!status.ended) return "interrupted";
+  return status.left() > 0 ? "stopped early" : "ended";
+}
+
 ArchiveStatus status_of(const fs::path& archive) {
   if (!fs::is_directory(archive))
     throw io::Error(archive, "", "is no archive", "give the folder that was --output of a run");
   ArchiveStatus status;
   status.owner = lock_owner(archive);
-  status.datasets = count_datasets(archive);
+  status.datasets = std::ssize(dataset_files(archive / "scans"));
   Reader reader(status);
   status.damaged_lines =
       read_journal(archive, [&](const JournalEntry& entry) { reader.read(entry); });

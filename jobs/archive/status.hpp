@@ -39,6 +39,10 @@ struct ArchiveStatus {
   std::optional<double> seconds_left() const;
 };
 
+/// Returns the state of the last run in one or two words: "never run", "starting", "running",
+/// "interrupted", "stopped early" or "ended".
+const char* state_of(const ArchiveStatus& status);
+
 /// Reads the state of the last run. Throws io::Error if the folder is no archive, or if its journal
 /// cannot be read.
 ArchiveStatus status_of(const std::filesystem::path& archive);

@@ -1,8 +1,7 @@
 #include "jobs/cli/datasets.hpp"
 
-#include <algorithm>
-
 #include "io/files/error.hpp"
+#include "jobs/archive/dataset_files.hpp"
 
 namespace semigeo::jobs::cli {
 
@@ -15,12 +14,8 @@ std::vector<std::filesystem::path> datasets_at(const std::filesystem::path& file
   if (!fs::is_directory(status)) return {file_or_archive};
 
   const fs::path scans = file_or_archive / "scans";
-  std::vector<fs::path> datasets;
-  for (const auto& entry :
-       fs::directory_iterator(fs::is_directory(scans, error) ? scans : file_or_archive))
-    if (entry.path().extension() == ".vtkhdf" && !entry.path().filename().string().starts_with('.'))
-      datasets.push_back(entry.path());
-  std::sort(datasets.begin(), datasets.end());
+  const std::vector<fs::path> datasets =
+      dataset_files(fs::is_directory(scans, error) ? scans : file_or_archive);
   if (datasets.empty())
     throw io::Error(file_or_archive, "", "holds no dataset (scans/*.vtkhdf)",
                     "make some: semigeo run SCANS --output " + file_or_archive.string());

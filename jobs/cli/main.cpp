@@ -58,6 +58,7 @@ int run(int argc, char** argv) {
       "  semigeo run scans/ --output archive     every scan below scans/ gets a dataset\n"
       "  semigeo status archive                  how far is it?\n"
       "  semigeo info archive                    what is in it\n"
+      "  semigeo report archive                  pages for a browser: archive/report/index.html\n"
       "  semigeo check archive                   is every byte as it was written?\n"
       "  semigeo prune archive                   remove what is of scans that are gone\n"
       "  semigeo recognise scene.ply --library archive   which models are in it, and where\n"
@@ -76,6 +77,7 @@ int run(int argc, char** argv) {
   add_info(app, exit_code);
   add_check(app, exit_code);
   add_prune(app, exit_code);
+  add_report(app, exit_code);
   add_export(app, exit_code);
   add_bench(app, exit_code);
   add_job(app, exit_code);

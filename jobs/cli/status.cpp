@@ -20,14 +20,6 @@ struct StatusOptions {
   bool details = false;  ///< Every failure and every repair is printed.
 };
 
-/// Returns the state of the last run in one or two words.
-const char* state_of(const ArchiveStatus& status) {
-  if (!status.last_run) return status.owner ? "starting" : "never run";
-  if (status.is_running()) return "running";
-  if (!status.ended) return "interrupted";
-  return status.left() > 0 ? "stopped early" : "ended";
-}
-
 nlohmann::json to_json(const ArchiveStatus& status) {
   nlohmann::json document = {{"state", state_of(status)},
                              {"datasets", status.datasets},

@@ -16,7 +16,7 @@ import h5py
 
 from support import PROGRAM, SemigeoTest, icosphere, obj_text, plane, write_ply
 
-COMMANDS = ("run", "info", "check", "export", "prune")
+COMMANDS = ("run", "info", "check", "export", "prune", "report")
 
 
 class UsageTest(SemigeoTest):

@@ -25,12 +25,13 @@ set(rules
 
   "jobs/archive: engine kernels io"
   "jobs/stages: engine kernels io"
+  "jobs/report: engine kernels io jobs/archive"
   "jobs/plan: engine kernels io jobs/archive"
   "jobs/run: engine kernels io jobs/archive jobs/plan"
   "jobs/slurm: engine kernels io jobs/archive jobs/plan jobs/run"
   "jobs/kinds: engine kernels io jobs/archive jobs/plan jobs/stages"
   "jobs/bench: engine kernels io jobs/archive jobs/plan jobs/run jobs/stages"
-  "jobs/cli: engine kernels io jobs/archive jobs/plan jobs/run jobs/slurm jobs/kinds jobs/stages jobs/bench")
+  "jobs/cli: engine kernels io jobs/archive jobs/plan jobs/run jobs/slurm jobs/kinds jobs/stages jobs/bench jobs/report")
 
 # Single headers that a layer may include besides.
 # Who owns a file descriptor is decided once, for engine, io and jobs.

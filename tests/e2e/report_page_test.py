@@ -1,0 +1,95 @@
+"""The report of an archive: what `semigeo report` writes, and how it behaves in a browser. Started with the
+folder of playwright-core, node and a browser, or with "none" three times, which skips what needs a browser."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+import unittest
+from pathlib import Path
+
+PROGRAM, PACKAGES, NODE, BROWSER = sys.argv[1:5]
+del sys.argv[2:5]
+
+from support import SemigeoTest, boulder, icosphere, write_ply  # noqa: E402
+
+HERE = Path(__file__).resolve().parent
+IMAGE = "<img src=x onerror=alert(1)>.ply"
+SCRIPT = "</script><script>alert(2)</script>.ply"
+GREEK = "αγγείο.ply"
+
+
+# Without the report the program says so whatever it is given.
+HAS_REPORT = subprocess.run([PROGRAM, "report", "/nonexistent"], capture_output=True).returncode != 2
+
+
+@unittest.skipIf(HAS_REPORT, "this program has the report")
+class NoReportTest(SemigeoTest):
+    def test_it_says_that_it_has_none_and_why(self):
+        process = self.semigeo("report", self.folder, code=2)
+        self.assertIn("this program has no report: ", process.stderr)
+        self.assertIn("install node and npm", process.stderr)
+
+
+@unittest.skipUnless(HAS_REPORT, "this program has no report")
+class ReportTest(SemigeoTest):
+    def report(self, *arguments):
+        return json.loads(self.semigeo("report", self.archive, "--json", *arguments).stdout)
+
+    def browse(self, check, *arguments):
+        if BROWSER == "none":
+            self.skipTest("no browser")
+        environment = dict(os.environ, HOME=str(self.folder))
+        process = subprocess.run([NODE, HERE / "report_browser.mjs", PACKAGES, BROWSER, check, *map(str, arguments)],
+                                 capture_output=True, text=True, timeout=200, env=environment)
+        self.assertEqual(process.returncode, 0, process.stdout + process.stderr)
+
+    def make_archive(self):
+        write_ply(self.scans / "boulder.ply", boulder(3, 1))
+        write_ply(self.scans / IMAGE, icosphere(2))
+        write_ply(self.scans / SCRIPT, icosphere(3))
+        write_ply(self.scans / GREEK, icosphere(2))
+        (self.scans / "<b>broken.ply").write_bytes(b"ply\nformat ascii 1.0\nelement vertex 3\n")
+        self.run_scans("--levels", 2, "--unit", "mm", code=1)
+
+    def test_the_index_sorts_filters_lists_failures_and_runs_nothing(self):
+        self.make_archive()
+        told = self.report()
+        index = Path(told["report"])
+        self.assertEqual((index, told["scans"], told["failures"]), (self.archive / "report/index.html", 5, 1))
+        failed = json.loads(self.semigeo("status", self.archive, "--json").stdout)["failed"]
+        reason, remedy = next(iter(failed.values())).rsplit("; ", 1)
+        self.browse("index", index, json.dumps({
+            "title": "archive", "names": ["boulder.ply", IMAGE, SCRIPT, GREEK, "<b>broken.ply"],
+            "failed": "<b>broken.ply", "reason": reason, "remedy": remedy}))
+
+    def test_the_same_archive_gives_the_same_page_elsewhere(self):
+        self.make_archive()
+        first = Path(self.report()["report"]).read_bytes()
+        elsewhere = Path(self.report("--output", self.folder / "a/b")["report"])
+        self.assertEqual(elsewhere, self.folder / "a/b/index.html")
+        self.assertEqual(elsewhere.read_bytes(), first)
+        self.assertEqual(sorted(path.name for path in elsewhere.parent.iterdir()), ["index.html"])
+
+    def test_a_thousand_scans(self):
+        write_ply(self.scans / "a.ply", icosphere(2))
+        self.run_scans("--levels", 1)
+        for number in range(1, 1000):
+            shutil.copyfile(self.dataset("a.ply"), self.archive / "scans" / f"copy-{number}.ply.vtkhdf")
+        begin = time.monotonic()
+        told = self.report()
+        self.assertLess(time.monotonic() - begin, 20)
+        self.assertEqual(told["scans"], 1000)
+        self.assertLess(Path(told["report"]).stat().st_size, 5e6)
+        self.browse("many", told["report"], 1000)
+
+    def test_what_is_no_archive_is_named(self):
+        process = self.semigeo("report", self.scans, code=1)
+        self.assertIn("is no archive", process.stderr)
+        self.assertFalse((self.scans / "report").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()

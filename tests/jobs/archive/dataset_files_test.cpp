@@ -1,0 +1,28 @@
+#include "jobs/archive/dataset_files.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/support/temporary_folder.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(DatasetFilesTest, AreCompleteDatasetsByName) {
+  const tests::TemporaryFolder folder;
+  for (const char* name : {"b.ply.vtkhdf", "a.ply.vtkhdf", "a.ply.xdmf", ".c.ply.vtkhdf"})
+    std::ofstream(folder / name) << 'x';
+  EXPECT_EQ(dataset_files(folder.path()),
+            (std::vector<fs::path>{folder / "a.ply.vtkhdf", folder / "b.ply.vtkhdf"}));
+}
+
+TEST(DatasetFilesTest, AreNoneInAFolderThatDoesNotExist) {
+  const tests::TemporaryFolder folder;
+  EXPECT_TRUE(dataset_files(folder / "absent").empty());
+}
+
+}  // namespace
+}  // namespace semigeo::jobs
