@@ -18,19 +18,29 @@ Place declaration(const PlyElement& element) {
   return {Place::Unit::kLine, element.line};
 }
 
-/// Returns, for each property of `vertex`, the axis whose coordinate it is, or -1.
+/// The names of what is read of a vertex: its point and, if it has one, its normal.
+constexpr std::array<std::string_view, 6> kVertexNames = {"x", "y", "z", "nx", "ny", "nz"};
+
+/// Returns, for each property of `vertex`, its place in kVertexNames, or -1. Either all parts of
+/// the normal have a place, or none.
 std::vector<int> find_axes(const PlyElement& vertex, const ScanBuilder& builder) {
   std::vector<int> axes(vertex.properties.size(), -1);
-  constexpr std::array<std::string_view, 3> kNames = {"x", "y", "z"};
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto found =
-        std::find_if(vertex.properties.begin(), vertex.properties.end(),
-                     [&](const PlyProperty& p) { return p.name == kNames[axis] && !p.count_type; });
-    if (found == vertex.properties.end())
+  int normals = 0;
+  for (int axis = 0; axis < std::ssize(kVertexNames); ++axis) {
+    const auto found = std::find_if(
+        vertex.properties.begin(), vertex.properties.end(),
+        [&](const PlyProperty& p) { return p.name == kVertexNames[axis] && !p.count_type; });
+    if (found != vertex.properties.end()) {
+      axes[found - vertex.properties.begin()] = axis;
+      if (axis >= 3) ++normals;
+    } else if (axis < 3) {
       builder.fail(declaration(vertex),
-                   "its vertices have no property " + std::string(kNames[axis]), kBadHeader);
-    axes[found - vertex.properties.begin()] = axis;
+                   "its vertices have no property " + std::string(kVertexNames[axis]), kBadHeader);
+    }
   }
+  if (normals < 3)
+    std::ranges::replace_if(
+        axes, [](int axis) { return axis >= 3; }, -1);
   return axes;
 }
 
@@ -132,17 +142,20 @@ class PlyBody {
  private:
   void read_vertices(const PlyElement& element) {
     const std::vector<int> axes = find_axes(element, builder_);
-    std::array<double, 3> point{};
+    const bool normals = std::ranges::find(axes, 3) != axes.end();
+    std::array<double, 6> values{};
     for (std::int64_t i = 0; i < element.count; ++i) {
       decoder_.begin_record(element, i);
       for (std::size_t p = 0; p < axes.size(); ++p) {
         if (axes[p] < 0) {
           decoder_.skip(element.properties[p]);
         } else {
-          point[axes[p]] = decoder_.scalar(element.properties[p]);
+          values[axes[p]] = decoder_.scalar(element.properties[p]);
         }
       }
-      builder_.add_point(point[0], point[1], point[2], decoder_.place());
+      builder_.add_point(values[0], values[1], values[2], decoder_.place());
+      if (normals)
+        builder_.add_normal(i, Eigen::Vector3d(values[3], values[4], values[5]).cast<float>());
       decoder_.end_record();
     }
   }

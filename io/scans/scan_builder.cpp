@@ -119,6 +119,8 @@ Scan ScanBuilder::finish(std::string format) {
     fail_index(largest_ahead_, largest_ahead_place_);
   }
   if (triangle_count_ == 0) fail_without_faces();
+  if (!scan_.mesh.normals.empty())
+    scan_.mesh.normals.resize(scan_.mesh.points.size(), Eigen::Vector3f::Zero());
   std::vector<std::int64_t> corners;
   for (std::size_t i = 0; i < waiting_.size(); i += corners.size() + 1) {
     const auto first = waiting_.begin() + static_cast<std::ptrdiff_t>(i) + 1;

@@ -48,6 +48,8 @@ class ScanBuilder {
 
   /// Counts values that the header does not declare.
   void add_surplus_values(std::int64_t count) { scan_.surplus_values += count; }
+  /// Notes a count of the file that what follows it contradicts.
+  void add_wrong_count() { ++scan_.wrong_counts; }
   /// Counts lines of the header that mean nothing.
   void add_unknown_header_lines(std::int64_t count) { scan_.unknown_header_lines += count; }
 
@@ -62,6 +64,16 @@ class ScanBuilder {
     if (point_count() >= options_.max_vertices)
       fail_limit("vertices", options_.max_vertices, place);
     scan_.mesh.points.emplace_back(x, y, z);
+  }
+
+  /// Adds a normal to that of a vertex that was added before. It is passed over if it is not
+  /// finite, or if there is no such vertex: normals only help (see TriangleMesh::normals).
+  void add_normal(std::int64_t vertex, const Eigen::Vector3f& normal) {
+    std::vector<Eigen::Vector3f>& normals = scan_.mesh.normals;
+    if (vertex < 0 || vertex >= point_count() || !normal.allFinite()) return;
+    if (vertex >= std::ssize(normals))
+      normals.resize(static_cast<std::size_t>(vertex) + 1, Eigen::Vector3f::Zero());
+    normals[static_cast<std::size_t>(vertex)] += normal;
   }
 
   /// Throws Error if a face has too many corners. It must be called before they are collected.

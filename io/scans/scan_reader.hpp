@@ -48,6 +48,7 @@ struct Scan {
   /// belong to no face.
   std::int64_t bad_vertices = 0;
   std::int64_t faces_of_bad_vertices = 0;  ///< Triangles that were dropped with them.
+  std::int64_t wrong_counts = 0;           ///< Counts of the file that its size contradicts.
   std::int64_t surplus_values = 0;         ///< Values of a text that its header does not declare.
   std::int64_t unknown_header_lines = 0;   ///< Lines of a header that mean nothing.
   /// Triangles of a range grid that would have joined surfaces at different depths.
@@ -59,8 +60,8 @@ struct Scan {
 
 /// Reads a surface from PLY, OBJ, OFF, STL, PCD or PTX, each plain or compressed, in a file or in a
 /// container of files. Everything in the file other than positions and faces is read over. A grid
-/// of points that a scanner measured (an organised PCD, a PTX, a PLY with `range_grid` and no faces)
-/// is triangulated.
+/// of points that a scanner measured (an organised PCD, a PTX, a PLY with `range_grid` and no
+/// faces) is triangulated.
 ///
 /// Every vertex is finite and every index valid in what it returns; it may still be degenerate or
 /// not a manifold. Everything else throws `Error`: no such file, another format than the name says,

@@ -166,6 +166,7 @@ void read_solid(ByteSource& source, ScanBuilder& builder) {
   source.consume(kPreambleBytes);
   // It is checked before reading, because another kind of file would give a confusing message.
   const std::int64_t count = triangles_ahead(source, builder, promised);
+  if (count != promised) builder.add_wrong_count();
   builder.promise_faces(count, kRecordBytes, count_place);
   builder.promise_points(builder.point_count() + 3 * count, kRecordBytes / 3, count_place);
   for (std::int64_t i = 0; i < count; ++i) {

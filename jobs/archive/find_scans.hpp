@@ -24,9 +24,9 @@ struct FoundScan {
 /// The files that a search of folders has passed over because they are no scans.
 struct PassedOver {
   /// The number of files of each kind. A kind is an extension in lower case (".jpg"), or "other".
-  std::map<std::string, std::int64_t> files;
+  std::map<std::string, std::int64_t> files = {};
   /// Sentences about what may have been meant: containers in containers, for example.
-  std::vector<std::string> notes;
+  std::vector<std::string> notes = {};
 };
 
 /// Returns "12 .jpg, 3 .mtl, 2 other", the most frequent kind first, or an empty text. The kinds

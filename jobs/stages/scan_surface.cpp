@@ -63,6 +63,7 @@ ScanSurface read_surface(const std::filesystem::path& path, const std::string& x
                     .bad_vertices = scan.bad_vertices,
                     .faces_of_bad_vertices = scan.faces_of_bad_vertices,
                     .bytes_after_end = scan.bytes_after_end,
+                    .wrong_counts = scan.wrong_counts,
                     .surplus_values = scan.surplus_values,
                     .unknown_header_lines = scan.unknown_header_lines,
                     .depth_jump_triangles = scan.depth_jump_triangles};

@@ -32,6 +32,7 @@ struct ScanRepairs {
   std::int64_t bad_vertices = 0;           ///< Dropped: not finite or implausibly large.
   std::int64_t faces_of_bad_vertices = 0;  ///< Triangles dropped with them.
   std::int64_t bytes_after_end = 0;        ///< Bytes behind all that the scan's header promises.
+  std::int64_t wrong_counts = 0;           ///< Counts of the file that its size contradicts.
   std::int64_t surplus_values = 0;         ///< Values of a text that its header does not declare.
   std::int64_t unknown_header_lines = 0;   ///< Lines of a header that mean nothing.
   std::int64_t depth_jump_triangles = 0;   ///< Triangles of a range grid that joined two depths.
@@ -42,6 +43,7 @@ struct ScanRepairs {
 /// Calls visit(name, count) for every count that few scans have. JSON has it only if it is not 0.
 template <typename Repairs, typename Visit>
 void each_rare_repair(Repairs& repairs, const Visit& visit) {
+  visit("wrong_counts", repairs.wrong_counts);
   visit("surplus_values", repairs.surplus_values);
   visit("unknown_header_lines", repairs.unknown_header_lines);
   visit("depth_jump_triangles", repairs.depth_jump_triangles);

@@ -40,6 +40,19 @@ TEST_F(ObjReader, ReadsEveryKindOfCorner) {
             (Triangles{{0, 1, 2}, {0, 1, 2}, {0, 1, 2}, {0, 1, 3}, {0, 1, 2}, {0, 2, 3}}));
 }
 
+TEST_F(ObjReader, NormalsOfCornersAddUpAtTheirVertices) {
+  const Scan scan = read("a.obj", kSquare +
+                                      "vn 0 0 1\nvn 0 1 0\nvn x\nvn 1 0 0 # nan\n"
+                                      "f 1//1 2/9/2 3//3\nf 1//-1 3 4//99\nf 1/2 2 4\n");
+  using Eigen::Vector3f;
+  ASSERT_EQ(scan.mesh.normals.size(), 4u);
+  EXPECT_EQ(scan.mesh.normals[0], Vector3f(1, 0, 1));
+  EXPECT_EQ(scan.mesh.normals[1], Vector3f(0, 1, 0));
+  EXPECT_EQ(scan.mesh.normals[2], Vector3f::Zero());
+  EXPECT_EQ(scan.mesh.normals[3], Vector3f::Zero());
+  EXPECT_TRUE(read("a.obj", kSquare + "f 1 2 3\n").mesh.normals.empty());
+}
+
 TEST_F(ObjReader, IgnoresColoursAndWeights) {
   const Scan scan =
       read("a.obj", "v 0 0 0 1\nv 1 0 0 0.5 0.5 0.5\nv\t0 1  0.5 nan\nf 1 2 3 # end\n");

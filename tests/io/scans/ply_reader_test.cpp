@@ -26,6 +26,28 @@ TEST_F(PlyReader, ReadsAscii) {
   EXPECT_EQ(scan.faces_skipped, 0);
 }
 
+TEST_F(PlyReader, ReadsNormals) {
+  const std::string list = "element face 1\nproperty list uchar int vertex_indices\n";
+  const std::string body = "0 0 0 0 0 1\n1 0 0 0 nan 1\n0 1 0 0 0 -2\n3 0 1 2\n";
+  const Scan scan = read("a.ply", header("ascii", "element vertex 3\n" + kXyz +
+                                                      "property float nx\nproperty float ny\n"
+                                                      "property float nz\n" +
+                                                      list) +
+                                      body);
+  ASSERT_EQ(scan.mesh.normals.size(), 3u);
+  EXPECT_EQ(scan.mesh.normals[0], Eigen::Vector3f(0, 0, 1));
+  EXPECT_EQ(scan.mesh.normals[1], Eigen::Vector3f::Zero());
+  EXPECT_EQ(scan.mesh.normals[2], Eigen::Vector3f(0, 0, -2));
+  EXPECT_EQ(point(scan, 1), Eigen::Vector3d(1, 0, 0));
+  // Two parts of a normal are none.
+  EXPECT_TRUE(read("a.ply", header("ascii", "element vertex 3\n" + kXyz +
+                                                "property float nx\nproperty float ny\n"
+                                                "property float c\n" +
+                                                list) +
+                                body)
+                  .mesh.normals.empty());
+}
+
 TEST_F(PlyReader, ReadsBothByteOrders) {
   for (const std::endian order : {std::endian::little, std::endian::big}) {
     const bool little = order == std::endian::little;

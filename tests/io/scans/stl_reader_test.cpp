@@ -62,8 +62,12 @@ TEST_F(StlReader, TheSizeDecidesWhereTheCountIsWrong) {
   std::string none = binary("", 3), too_many = binary("", 3);
   none.replace(80, 4, bytes_of(0));
   too_many.replace(80, 4, bytes_of(9));
-  for (const std::string& file : {none, too_many})
-    EXPECT_EQ(read("a.stl", file).mesh.triangles.size(), 3u);
+  for (const std::string& file : {none, too_many}) {
+    const Scan scan = read("a.stl", file);
+    EXPECT_EQ(scan.mesh.triangles.size(), 3u);
+    EXPECT_EQ(scan.wrong_counts, 1);
+  }
+  EXPECT_EQ(read("a.stl", binary("", 3)).wrong_counts, 0);
 }
 
 TEST_F(StlReader, SolidsBehindEachOtherAreAllRead) {

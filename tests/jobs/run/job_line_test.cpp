@@ -38,7 +38,8 @@ void every_field_of_result(Result& result, const Visit& visit) {
          vanished] = result;
   visit_each(visit, format, vertices, triangles, parts, levels, vanished);
   {
-    auto& [surface, a, b, c, d, e, f, g, h] = repairs;
+    auto& [surface, a, b, c, d, e, f, g, h, wrong] = repairs;
+    visit(wrong);
     visit_each(visit, a, b, c, d, e, f, g, h);
     auto& [i, j, k, l, m, n, o, p, q] = surface;
     visit_each(visit, i, j, k, l, m, n, o, p, q);
