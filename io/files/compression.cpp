@@ -42,7 +42,7 @@ class WholeStream final : public ByteStream {
 /// Decompresses bzip2, xz or zstd.
 class FilterStream final : public ByteStream {
  public:
-  FilterStream(std::unique_ptr<ByteStream> packed, const Compression& compression)
+  FilterStream(std::unique_ptr<ByteStream> packed, const FileCompression& compression)
       : path_(packed->path()), compression_(compression), archive_(std::move(packed)) {
     if (compression.name == "bzip2") archive_read_support_filter_bzip2(archive_.get());
     if (compression.name == "xz") archive_read_support_filter_xz(archive_.get());
@@ -92,7 +92,7 @@ class FilterStream final : public ByteStream {
   }
 
   std::filesystem::path path_;
-  const Compression& compression_;
+  const FileCompression& compression_;
   Libarchive archive_;
   std::int64_t position_ = 0;
   bool ended_ = false;
@@ -107,20 +107,21 @@ bool is_bzip2_block(std::string_view begin) {
 
 }  // namespace
 
-const Compression* compression_of(std::string_view begin) {
+const FileCompression* compression_of(std::string_view begin) {
   const auto* const found =
-      std::ranges::find_if(kCompressions, [&](const Compression& compression) {
+      std::ranges::find_if(kFileCompressions, [&](const FileCompression& compression) {
         return begin.starts_with(compression.magic) &&
                (compression.name != "bzip2" || is_bzip2_block(begin));
       });
-  return found == kCompressions.end() ? nullptr : found;
+  return found == kFileCompressions.end() ? nullptr : found;
 }
 
-const Compression* compression_of_name(const std::filesystem::path& path) {
+const FileCompression* compression_of_name(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  const auto* const found = std::ranges::find(kCompressions, extension, &Compression::extension);
-  return found == kCompressions.end() ? nullptr : found;
+  const auto* const found =
+      std::ranges::find(kFileCompressions, extension, &FileCompression::extension);
+  return found == kFileCompressions.end() ? nullptr : found;
 }
 
 Unpacked unpacked(std::unique_ptr<ByteStream> stream) {
@@ -132,7 +133,7 @@ Unpacked unpacked(std::unique_ptr<ByteStream> stream) {
     got += step;
   }
   start.resize(got);
-  const Compression* const compression = compression_of(start);
+  const FileCompression* const compression = compression_of(start);
   if (compression == nullptr)
     return {std::make_unique<WholeStream>(std::move(stream), std::move(start)), nullptr};
   if (compression->magic == GzipStream::kMagic)

@@ -63,7 +63,7 @@ std::string scan_variant(const std::filesystem::path& path) {
 std::string likely_scan_variant(const std::filesystem::path& path) {
   const ScanFormat* format = find_format(path);
   if (format == nullptr) return "";
-  const Compression* compression = compression_of_name(path);
+  const FileCompression* compression = compression_of_name(path);
   return with_compression(format->variant({}), compression == nullptr ? "" : compression->name);
 }
 
