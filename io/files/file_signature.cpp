@@ -23,6 +23,9 @@ constexpr const char* kUtf8 = "save it as UTF-8 or ASCII text";
 
 using namespace std::string_view_literals;
 
+constexpr FileSignature kVtkXml = {"a VTK XML file", "correct its extension to .vtp", ".vtp"};
+constexpr std::string_view kXml = "<?xml";
+
 constexpr std::array kRows = {
     Row{"version https://git-lfs.github.com/spec/"sv,
         {"a pointer of Git LFS, not the content that it stands for", "fetch it with: git lfs pull",
@@ -30,7 +33,7 @@ constexpr std::array kRows = {
         true},
     Row{"<!doctype html"sv, {"a web page (HTML)", "download the scan again", ""}, true},
     Row{"<html"sv, {"a web page (HTML)", "download the scan again", ""}, true},
-    Row{"<?xml"sv, {"an XML document", kExportIt, ""}, true},
+    Row{kXml, {"an XML document", kExportIt, ""}, true},
     Row{"PK\x03\x04"sv, {"a ZIP archive", "correct its extension to .zip", "", true}},
     Row{"PK\x05\x06"sv, {"an empty ZIP archive", "copy it again from its source", "", true}},
     Row{"7z\xbc\xaf\x27\x1c"sv, {"a 7z archive", "correct its extension to .7z", "", true}},
@@ -52,6 +55,8 @@ constexpr std::array kRows = {
     Row{"ply\n"sv, {"a PLY file", "correct its extension to .ply", ".ply"}},
     Row{"ply\r"sv, {"a PLY file", "correct its extension to .ply", ".ply"}},
     Row{"solid "sv, {"an STL file", "correct its extension to .stl", ".stl"}},
+    Row{"# vtk datafile"sv, {"a VTK file", "correct its extension to .vtk", ".vtk"}, true},
+    Row{"<vtkfile"sv, kVtkXml, true},
     Row{"OFF\n"sv, {"an OFF file", "correct its extension to .off", ".off"}},
     Row{"OFF\r"sv, {"an OFF file", "correct its extension to .off", ".off"}},
 };
@@ -103,6 +108,8 @@ std::optional<FileSignature> file_signature(std::string_view begin) {
   if (begin.find_first_not_of('\0') == std::string_view::npos) return kZeros;
   const auto* const row =
       std::ranges::find_if(kRows, [&](const Row& known) { return matches(known, begin); });
+  if (row != kRows.end() && row->bytes == kXml && begin.find("<VTKFile") != begin.npos)
+    return kVtkXml;
   if (row != kRows.end()) return row->signature;
   if (is_utf16_without_mark(begin)) return kUtf16;
   return std::nullopt;

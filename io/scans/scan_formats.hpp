@@ -29,9 +29,12 @@ extern const ScanFormat kPcdFormat;
 extern const ScanFormat kPtxFormat;
 extern const ScanFormat kGltfFormat;
 extern const ScanFormat kGlbFormat;
+extern const ScanFormat kVtkFormat;
+extern const ScanFormat kVtpFormat;
 
 /// The formats that the program reads, in the order in which messages name them.
 inline constexpr std::array kScanFormats = {&kPlyFormat, &kObjFormat, &kOffFormat,  &kStlFormat,
-                                            &kPcdFormat, &kPtxFormat, &kGltfFormat, &kGlbFormat};
+                                            &kPcdFormat, &kPtxFormat, &kGltfFormat, &kGlbFormat,
+                                            &kVtkFormat, &kVtpFormat};
 
 }  // namespace semigeo::io

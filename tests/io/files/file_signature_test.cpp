@@ -66,6 +66,10 @@ TEST(FileSignatureTest, KnowsScans) {
   EXPECT_EQ(file_signature("solid cube\n").value().extension, ".stl");
   EXPECT_EQ(file_signature("OFF\n3 1 0").value().extension, ".off");
   EXPECT_EQ(file_signature("glTF\2").value().extension, ".glb");
+  EXPECT_EQ(file_signature("# vtk DataFile Version 4.2\n").value().extension, ".vtk");
+  EXPECT_EQ(file_signature("<VTKFile type=").value().extension, ".vtp");
+  EXPECT_EQ(file_signature("<?xml version=\"1.0\"?>\n<VTKFile").value().extension, ".vtp");
+  EXPECT_EQ(file_signature("<?xml version=\"1.0\"?>\n<X3D>").value().extension, "");
 }
 
 TEST(FileSignatureTest, SaysNothingOfOtherBytes) {

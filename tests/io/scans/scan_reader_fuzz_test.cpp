@@ -6,7 +6,7 @@
 #include <ostream>
 #include <random>
 
-#include "tests/io/scans/gltf_files.hpp"
+#include "tests/io/scans/vtk_files.hpp"
 
 namespace {
 // Far above what files of some kilobytes need (the window takes 1 MiB), far below what the numbers
@@ -170,6 +170,31 @@ GltfParts gltf_parts() {
   return parts;
 }
 
+Seed vtk(bool binary) {
+  VtkText file(binary, "3.0");
+  file.line("DATASET POLYDATA").line("FIELD f 1").line("a 1 2 int").numbers(std::vector<int>{1, 2});
+  file.line("POINTS 4 float").numbers(kSquare);
+  file.line("LINES 1 3").numbers(std::vector<int>{2, 0, 1});
+  file.line("TRIANGLE_STRIPS 1 5").numbers(std::vector<int>{4, 0, 1, 3, 2});
+  file.line("POLYGONS 2 9").numbers(std::vector<int>{3, 0, 1, 2, 4, 0, 1, 2, 3});
+  return {binary ? "binary.vtk" : "ascii.vtk", file.line("POINT_DATA 4").text};
+}
+
+Seed vtk_grid(bool binary) {
+  VtkText file(binary, "5.1");
+  file.line("DATASET UNSTRUCTURED_GRID").line("POINTS 4 float").numbers(kSquare);
+  file.line("METADATA").line("INFORMATION 0").line("").line("CELLS 3 7");
+  file.line("OFFSETS vtktypeint64").numbers(std::vector<std::int64_t>{0, 3, 7});
+  file.line("CONNECTIVITY vtktypeint64").numbers(std::vector<std::int64_t>{0, 1, 2, 0, 1, 2, 3});
+  file.line("CELL_TYPES 2").numbers(std::vector<int>{5, 9});
+  return {binary ? "binary_grid.vtk" : "ascii_grid.vtk", file.text};
+}
+
+Seed vtp(const std::string& name, VtpWriter writer) {
+  const std::string pieces = writer.piece() + writer.piece();
+  return {name, writer.file(pieces)};
+}
+
 std::vector<Seed> plain_seeds() {
   std::string facets = "solid a b\n";
   for (int i = 0; i < 4; ++i)
@@ -196,7 +221,15 @@ std::vector<Seed> plain_seeds() {
           pcd("binary_compressed"),
           ptx(),
           {"a.gltf", gltf_parts().gltf()},
-          {"a.glb", gltf_parts().glb()}};
+          {"a.glb", gltf_parts().glb()},
+          vtk(false),
+          vtk(true),
+          vtk_grid(false),
+          vtk_grid(true),
+          vtp("ascii.vtp", {}),
+          vtp("binary.vtp", {.format = "binary", .wide_header = true, .compressed = true}),
+          vtp("raw.vtp", {.format = "appended", .order = std::endian::big}),
+          vtp("packed.vtp", {.format = "appended", .encoding = "base64", .compressed = true})};
 }
 
 std::vector<Seed> seeds() {

@@ -21,8 +21,9 @@ TEST(ScanFormatTest, IsDecidedByTheName) {
 }
 
 TEST(ScanFormatTest, ExtensionsAreListedInWords) {
-  EXPECT_EQ(scan_extensions(", ", " and "), ".ply, .obj, .off, .stl, .pcd, .ptx, .gltf and .glb");
-  EXPECT_EQ(scan_extensions(" ", " "), ".ply .obj .off .stl .pcd .ptx .gltf .glb");
+  EXPECT_EQ(scan_extensions(", ", " and "),
+            ".ply, .obj, .off, .stl, .pcd, .ptx, .gltf, .glb, .vtk and .vtp");
+  EXPECT_EQ(scan_extensions(" ", " "), ".ply .obj .off .stl .pcd .ptx .gltf .glb .vtk .vtp");
 }
 
 TEST_F(ScanReader, ReadsCompressedFiles) {
