@@ -58,18 +58,19 @@ struct Scan {
   std::optional<Eigen::Vector3d> eye;
 };
 
-/// Reads a surface from PLY, OBJ, OFF, STL, PCD or PTX, each plain or compressed, in a file or in a
-/// container of files. Everything in the file other than positions and faces is read over. A grid
-/// of points that a scanner measured (an organised PCD, a PTX, a PLY with `range_grid` and no
-/// faces) is triangulated.
+/// Reads a surface from a file of one of the formats in scan_formats.hpp, plain or compressed,
+/// alone or in a container of files. Everything in the file other than positions and faces is read
+/// over. A grid of points that a scanner measured (an organised PCD, a PTX, a PLY with `range_grid`
+/// and no faces) is triangulated.
 ///
 /// Every vertex is finite and every index valid in what it returns; it may still be degenerate or
 /// not a manifold. Everything else throws `Error`: no such file, another format than the name says,
 /// more promised in a header than the file holds, no triangle with finite coordinates, indices out
 /// of range, no vertices, no faces (a point cloud), more than `options` admit.
 ///
-/// Streams through a buffer of 1 MiB; memory is that of the mesh and never follows a promise of a
-/// header. Several threads may call the function at once.
+/// Streams through a buffer of 1 MiB; memory is that of the mesh, for glTF and .vtp also that of
+/// the file, and never follows a promise of a header. Several threads may call the function at
+/// once.
 Scan read_scan(const std::filesystem::path& path, const ScanOptions& options = {});
 
 }  // namespace semigeo::io
