@@ -6,7 +6,7 @@ import { createHash } from "node:crypto";
 import { readFileSync, writeFileSync } from "node:fs";
 import { build, transform } from "esbuild";
 
-const names = ["index"];
+const names = ["index", "scan"];
 
 async function bundle(entry) {
   const result = await build({
@@ -33,7 +33,8 @@ async function halves(name) {
   return parts;
 }
 
-/// Returns the text as a C++ literal, in lines of moderate length.
+/// Returns the text as a C++ expression, in lines of moderate length. Its size is in it, because
+/// compilers count few characters of a constant.
 function literal(text) {
   const bytes = Buffer.from(text, "utf8");
   const lines = [];
@@ -45,14 +46,14 @@ function literal(text) {
     }
     lines.push(`"${line}"`);
   }
-  return lines.join("\n");
+  return `std::string_view(\n${lines.join("\n")},\n${bytes.length})`;
 }
 
 let source = '#include "jobs/report/pages.hpp"\n\nnamespace semigeo::jobs {\n\nconst Pages& pages() {\n' +
   "  static constexpr Pages kPages = {\n      .missing = {},\n";
 for (const name of names) {
   const [before, behind] = await halves(name);
-  source += `      .${name} = {\n${literal(before)},\n${literal(behind)}},\n`;
+  source += `      .${name} = {${literal(before)}, ${literal(behind)}},\n`;
 }
 source += "  };\n  return kPages;\n}\n\n}  // namespace semigeo::jobs\n";
 writeFileSync(process.argv[2], source);

@@ -15,6 +15,7 @@ struct Pages {
   /// Why the program has no pages, as a clause. It is empty if it has them.
   std::string_view missing;
   PageTemplate index = {};  ///< The table of all scans.
+  PageTemplate scan = {};   ///< The surface of one scan and its data.
 };
 
 /// Returns the pages of this program.

@@ -55,6 +55,9 @@ const checks = {
     await page.check("#states input[value=done]");
     assert.equal((await names(page)).length, all.length);
 
+    // Each scan with a dataset leads to its page.
+    assert.equal(await page.locator("#rows a").count(), all.length - 1);
+
     // Colours: the system's, and the reader's own choice.
     const background = () => page.$eval("body", body => getComputedStyle(body).backgroundColor);
     await page.emulateMedia({ colorScheme: "light" });
@@ -64,6 +67,71 @@ const checks = {
     await page.selectOption("#theme", "light");
     assert.equal(await background(), light);
     await page.selectOption("#theme", "auto");
+  },
+
+  /// A page of a scan: PAGE and, as JSON, its title.
+  async scan(page, wanted) {
+    const { title } = JSON.parse(wanted);
+    assert.equal(await page.textContent("h1"), title);
+    const pixels = () => page.evaluate(async () => {
+      await new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)));
+      const from = document.getElementById("canvas");
+      const to = Object.assign(document.createElement("canvas"), { width: 480, height: 320 });
+      const context = to.getContext("2d");
+      context.drawImage(from, 0, 0, 480, 320);
+      return [...context.getImageData(0, 0, 480, 320).data];
+    });
+    /// The share of pixels that differ.
+    const difference = (a, b) => {
+      let count = 0;
+      for (let i = 0; i < a.length; i += 4)
+        if ([0, 1, 2].some(c => Math.abs(a[i + c] - b[i + c]) > 12)) ++count;
+      return count / (a.length / 4);
+    };
+    const first = await pixels();
+    const corner = first.slice(0, 4);
+    const background = first.map((_, i) => corner[i % 4]);
+    assert.ok(difference(first, background) > 0.1, "nothing is drawn");
+
+    /// Does something to the page, and expects other pixels.
+    const changes = async (what, action) => {
+      const before = await pixels();
+      await action();
+      assert.ok(difference(before, await pixels()) > 0.0005, `${what} changes nothing`);
+    };
+    const setLevel = level => page.$eval("#level", (slider, value) => {
+      slider.value = value;
+      slider.dispatchEvent(new Event("input"));
+    }, String(level));
+    const last = Number(await page.getAttribute("#level", "max"));
+    assert.ok(last > 0);
+    await setLevel(0);
+    const sigma = await page.textContent("#level-text");
+    assert.match(sigma, /^0 of \d+, sigma [\d.e+-]+ mm/);
+    await changes("the slider", () => setLevel(last));
+    assert.notEqual(await page.textContent("#level-text"), sigma);
+    await changes("the level back", () => setLevel(0));
+    await changes("K", () => page.check("input[name=field][value=K]"));
+    assert.match(await page.textContent("#high"), /mm²/);
+    await changes("the palette", () => page.selectOption("#palette", "thesis"));
+    await changes("no field", () => page.check("input[name=field][value=none]"));
+    for (const box of ["feature-mean", "contour-mean", "contour-gaussian", "wireframe", "rims"]) {
+      await changes(`${box} on`, () => page.check(`#${box}`));
+      await changes(`${box} off`, () => page.uncheck(`#${box}`));
+    }
+
+    // What is under the cursor, by mouse and by keyboard.
+    const box = await page.locator("#canvas").boundingBox();
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    assert.match(await page.textContent("#probe"), /^vertex [\d,]+ of level 0, .*H .* \/ mm/);
+    await page.mouse.move(box.x + 2, box.y + 2);
+    assert.match(await page.textContent("#probe"), /^Point at the surface/);
+    await page.focus("#canvas");
+    await page.keyboard.press("Enter");
+    assert.match(await page.textContent("#probe"), /^vertex/);
+    await changes("the keyboard", () => page.keyboard.press("ArrowLeft"));
+    assert.match(await page.textContent("#python"), /^import h5py\n/);
+    console.log(await page.textContent("#python"));
   },
 
   /// Many scans: INDEX and their number.
@@ -85,7 +153,10 @@ const checks = {
   },
 };
 
-const browser = await chromium.launch({ executablePath: browserPath, args: ["--no-sandbox", "--disable-gpu"] });
+const browser = await chromium.launch({ executablePath: browserPath,
+  args: ["--no-sandbox", "--disable-dev-shm-usage", "--use-gl=angle", "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader"],
+});
 const complaints = [];
 try {
   const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });

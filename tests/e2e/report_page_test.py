@@ -13,6 +13,8 @@ from pathlib import Path
 PROGRAM, PACKAGES, NODE, BROWSER = sys.argv[1:5]
 del sys.argv[2:5]
 
+import numpy as np  # noqa: E402
+
 from support import SemigeoTest, boulder, icosphere, write_ply  # noqa: E402
 
 HERE = Path(__file__).resolve().parent
@@ -41,10 +43,11 @@ class ReportTest(SemigeoTest):
     def browse(self, check, *arguments):
         if BROWSER == "none":
             self.skipTest("no browser")
-        environment = dict(os.environ, HOME=str(self.folder))
+        environment = dict(os.environ, HOME=str(self.folder), TMPDIR=str(self.folder))
         process = subprocess.run([NODE, HERE / "report_browser.mjs", PACKAGES, BROWSER, check, *map(str, arguments)],
                                  capture_output=True, text=True, timeout=200, env=environment)
         self.assertEqual(process.returncode, 0, process.stdout + process.stderr)
+        return process.stdout
 
     def make_archive(self):
         write_ply(self.scans / "boulder.ply", boulder(3, 1))
@@ -71,7 +74,44 @@ class ReportTest(SemigeoTest):
         elsewhere = Path(self.report("--output", self.folder / "a/b")["report"])
         self.assertEqual(elsewhere, self.folder / "a/b/index.html")
         self.assertEqual(elsewhere.read_bytes(), first)
-        self.assertEqual(sorted(path.name for path in elsewhere.parent.iterdir()), ["index.html"])
+        self.assertEqual(sorted(path.name for path in elsewhere.parent.iterdir()), ["index.html", "scans"])
+
+    def test_a_scan_is_drawn_level_by_level(self):
+        points, triangles = boulder(4, 1)
+        opened = triangles[points[triangles].mean(axis=1)[:, 2] < 0.6]
+        write_ply(self.scans / IMAGE, (points, opened))
+        self.run_scans("--levels", 4, "--unit", "mm")
+        self.report()
+        page, = (self.archive / "report/scans").iterdir()
+        self.assertLess(page.stat().st_size, 6e6)
+        code = self.browse("scan", page, json.dumps({"title": IMAGE}))
+        # The lines of Python that the page shows read this dataset.
+        subprocess.run([sys.executable, "-B", "-c", code + "assert H.ndim == 1 and len(H) > 1000"], cwd=self.archive,
+                       check=True)
+
+    def test_pages_of_scans_that_have_not_changed_are_left_alone(self):
+        write_ply(self.scans / "a.ply", icosphere(2))
+        write_ply(self.scans / "b.ply", icosphere(3))
+        self.run_scans("--levels", 1)
+        told = self.report()
+        self.assertEqual((told["pages_made"], told["pages_up_to_date"]), (2, 0))
+        pages = self.archive / "report/scans"
+        before = {path.name: path.stat().st_ino for path in pages.iterdir()}
+        write_ply(self.scans / "a.ply", boulder(2, 1))
+        self.run_scans("--levels", 1)
+        told = self.report()
+        self.assertEqual((told["pages_made"], told["pages_up_to_date"], told["pages_failed"]), (1, 1, 0))
+        self.assertEqual((pages / "b.ply.html").stat().st_ino, before["b.ply.html"])
+        told = self.report("--index-only", "--output", self.folder / "index")
+        self.assertEqual(sorted(path.name for path in (self.folder / "index").iterdir()), ["index.html"])
+
+    def test_a_large_scan_stays_below_6_megabytes(self):
+        points, triangles = boulder(5, 1)
+        noise = np.random.default_rng(1).normal(scale=0.003, size=points.shape)
+        write_ply(self.scans / "a.ply", (points + noise, triangles))
+        self.run_scans("--levels", 8)
+        self.report()
+        self.assertLess((self.archive / "report/scans/a.ply.html").stat().st_size, 6e6)
 
     def test_a_thousand_scans(self):
         write_ply(self.scans / "a.ply", icosphere(2))
@@ -79,7 +119,7 @@ class ReportTest(SemigeoTest):
         for number in range(1, 1000):
             shutil.copyfile(self.dataset("a.ply"), self.archive / "scans" / f"copy-{number}.ply.vtkhdf")
         begin = time.monotonic()
-        told = self.report()
+        told = self.report("--index-only")
         self.assertLess(time.monotonic() - begin, 20)
         self.assertEqual(told["scans"], 1000)
         self.assertLess(Path(told["report"]).stat().st_size, 5e6)
