@@ -31,7 +31,7 @@ const ScanFormat* find_format(const std::filesystem::path& path) {
 }
 
 /// Returns "PLY ascii, gzip".
-std::string with_compression(std::string format, std::string_view compression) {
+std::string with_compression(const std::string& format, std::string_view compression) {
   return compression.empty() ? format : format + ", " + std::string(compression);
 }
 

@@ -93,9 +93,10 @@ bool print_reports(const RunResult& result, const JobKind& kind) {
     const Job& job = result.plan[i].job;
     if (job.kind != &kind || !result.outcomes[i].result.has_value()) continue;
     const JobReport report = kind.report(job, result.outcomes[i].result);
+    const std::string name = report.name.empty() ? shown_name(job) : report.name;
     lines.resize(std::max(lines.size(), report.lines.size()));
     for (std::size_t k = 0; k < report.lines.size(); ++k)
-      if (!report.lines[k].text.empty()) lines[k].push_back({job.name, report.lines[k]});
+      if (!report.lines[k].text.empty()) lines[k].push_back({name, report.lines[k]});
   }
   bool shortened = false;
   for (const std::vector<NamedLine>& of_heading : lines) {

@@ -314,6 +314,7 @@ class SurfaceKind final : public TypedJobKind<SurfaceJobData, SurfaceJobResult> 
     const SurfaceJobResult& made = *result(value);
     const PreparationOptions& wanted = data(job).parameters.preparation;
     JobReport report;
+    report.name = data(job).input_name;
     report.fields = {{"format", made.format},
                      {"vertices", made.vertices},
                      {"triangles", made.triangles},

@@ -68,6 +68,8 @@ struct ReportLine {
 
 /// The report of a run about one job that is done.
 struct JobReport {
+  /// What people call the job, as UTF-8; if it is empty, the job's own name is printed.
+  std::string name = {};
   std::vector<std::pair<std::string, nlohmann::json>> fields;  ///< Members of its JSON object.
   /// The first lines of all jobs of a kind are printed first, then their second lines, and so on.
   std::vector<ReportLine> lines;

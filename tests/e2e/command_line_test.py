@@ -138,7 +138,7 @@ class RunTest(SemigeoTest):
     def test_text_tells_repairs_and_totals(self):
         process = self.semigeo("run", self.scans, "--output", self.archive, "--levels", 1)
         lines = process.stdout.splitlines()
-        self.assertEqual(lines[0], "repaired: sub__square.obj: 1 flipped faces")
+        self.assertEqual(lines[0], "repaired: sub/square.obj: 1 flipped faces")
         self.assertRegex(lines[-1], r"^2 done, 0 up to date, 0 failed; \S+( [kMG])? vertex levels/s; "
                                     r".* wall, .* CPU, \d+ MB peak$")
         self.assertEqual(process.stderr, "")
