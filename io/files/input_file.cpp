@@ -9,25 +9,9 @@
 #include <system_error>
 #include <utility>
 
-#include "io/files/error.hpp"
+#include "io/files/read_error.hpp"
 
 namespace semigeo::io {
-namespace {
-
-std::string system_message(int code) {
-  return std::generic_category().message(code);
-}
-
-Error open_error(const std::filesystem::path& path, int code) {
-  if (code == ENOENT || code == ENOTDIR)
-    return Error(path, "", "there is no such file", "check the path");
-  if (code == EACCES || code == EPERM)
-    return Error(path, "", "reading is not permitted", "change its permissions (chmod +r)");
-  return Error(path, "", "cannot be opened: " + system_message(code));
-}
-
-}  // namespace
-
 InputFile::InputFile(std::filesystem::path path) : path_(std::move(path)) {
   // With O_NONBLOCK the opening of a pipe does not wait for a writer. Regular files are not
   // affected.
@@ -71,8 +55,8 @@ std::size_t InputFile::read_at(std::uint64_t offset, std::span<char> bytes) cons
 }
 
 void InputFile::fail(std::uint64_t offset) const {
-  throw Error(path_, "byte " + std::to_string(offset), "cannot be read: " + system_message(errno),
-              "check the disk it is on");
+  throw ReadError(errno, path_, "byte " + std::to_string(offset),
+                  "cannot be read: " + std::generic_category().message(errno));
 }
 
 }  // namespace semigeo::io

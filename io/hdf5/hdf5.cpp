@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "io/files/error.hpp"
+#include "io/files/read_error.hpp"
 #include "io/files/write_error.hpp"
 #include "io/hdf5/hdf5_library.hpp"
 
@@ -105,6 +106,7 @@ std::string innermost_reason() {
 void Hdf5File::fail(const std::string& place, const std::string& action) const {
   const auto [reason, code] = reason_and_code();
   const std::string problem = "cannot " + action + ": " + reason;
+  if (!writing_ && code != 0) throw ReadError(code, shown_as_, place, problem);
   if (!writing_) throw Error(shown_as_, place, problem, kDamaged);
   throw WriteError(code, shown_as_, place, problem,
                    code == ENOSPC ? "free some space and run again"

@@ -1,11 +1,14 @@
 #include "jobs/archive/verification.hpp"
 
+#include <cerrno>
 #include <csignal>
 #include <cstdint>
+#include <new>
 #include <system_error>
 
 #include "io/dataset/dataset.hpp"
 #include "io/files/error.hpp"
+#include "io/files/read_error.hpp"
 #include "io/library/hash_library.hpp"
 #include "jobs/archive/in_children.hpp"
 
@@ -27,43 +30,59 @@ double most_seconds(const fs::path& file) {
 /// Reads everything in a file. Throws if something is wrong with it.
 using Verify = void (*)(const fs::path&);
 
-std::string problem_of(const fs::path& file, Verify verify) {
+constexpr char kRead = 'r';
+constexpr char kRefused = 'x';
+
+/// Returns a letter, which says whether the file could be read, and what is wrong with it.
+std::string answer_about(const fs::path& file, Verify verify) {
   try {
     verify(file);
-    return "";
+    return {kRead};
+  } catch (const io::ReadError& e) {
+    return std::string(1, e.is_absent() ? kRead : kRefused) + e.what();
+  } catch (const std::bad_alloc&) {
+    return kRefused + std::string(io::ReadError(ENOMEM, file, "", "needs too much memory").what());
   } catch (const std::exception& e) {
-    return e.what();
+    return kRead + std::string(e.what());
   }
 }
 
-std::string result_of(const engine::ForkedResult& result, const fs::path& file) {
-  if (result.exit_code == 0) return result.text;
-  return io::Error(file, "",
-                   result.signal == SIGXCPU ? "it is damaged so that HDF5 never ends reading it"
-                                            : "it is damaged so that HDF5 crashes over it",
-                   "remove it and run again, or run with --verify")
-      .what();
+Verified result_of(const engine::ForkedResult& result, const fs::path& file) {
+  if (result.exit_code == 0 && !result.text.empty())
+    return {.problem = result.text.substr(1), .was_read = result.text.front() == kRead};
+  if (result.signal == SIGKILL)
+    return {.problem = io::Error(file, "",
+                                 "was not read to its end: the process that read it was killed, by "
+                                 "hand or because memory ran out",
+                                 "free some memory, and run again")
+                           .what(),
+            .was_read = false};
+  return {.problem = io::Error(file, "",
+                               result.signal == SIGXCPU
+                                   ? "it is damaged so that HDF5 never ends reading it"
+                                   : "it is damaged so that HDF5 crashes over it",
+                               "remove it and run again, or run with --verify")
+                         .what()};
 }
 
-std::vector<std::string> verify_all(const std::vector<fs::path>& files, Verify verify,
-                                    int at_once) {
+std::vector<Verified> verify_all(const std::vector<fs::path>& files, Verify verify, int at_once) {
   const auto results = in_children(
-      files.size(), at_once, [&](std::size_t i) { return problem_of(files[i], verify); },
+      files.size(), at_once, [&](std::size_t i) { return answer_about(files[i], verify); },
       [&](std::size_t i) { return most_seconds(files[i]); });
-  std::vector<std::string> problems;
+  std::vector<Verified> verified;
   for (std::size_t i = 0; i < files.size(); ++i)
-    problems.push_back(result_of(results[i], files[i]));
-  return problems;
+    verified.push_back(result_of(results[i], files[i]));
+  return verified;
 }
 
 }  // namespace
 
-std::vector<std::string> verify_datasets(const std::vector<fs::path>& datasets, int at_once) {
+std::vector<Verified> verify_datasets(const std::vector<fs::path>& datasets, int at_once) {
   return verify_all(
       datasets, [](const fs::path& file) { io::Dataset(file).verify(); }, at_once);
 }
 
-std::vector<std::string> verify_libraries(const std::vector<fs::path>& libraries) {
+std::vector<Verified> verify_libraries(const std::vector<fs::path>& libraries) {
   return verify_all(
       libraries, [](const fs::path& file) { io::HashLibrary(file).verify(); }, 1);
 }

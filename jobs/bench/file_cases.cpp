@@ -173,8 +173,8 @@ class Files {
   BenchWork verify(engine::Workers& workers) {
     const fs::path& path = dataset(workers);
     const std::vector<fs::path> all(workers.threads(), path);
-    for (const std::string& problem : verify_datasets(all, workers.threads()))
-      if (!problem.empty()) throw std::runtime_error(problem);
+    for (const Verified& verified : verify_datasets(all, workers.threads()))
+      if (!verified.problem.empty()) throw std::runtime_error(verified.problem);
     const double bytes = size_of_file(path) * workers.threads();
     return {.amount = 1e-6 * bytes, .memory_bytes = 2 * bytes};
   }

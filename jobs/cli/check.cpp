@@ -21,12 +21,14 @@ int check(const CheckOptions& options) {
   const auto datasets = datasets_at(options.target);
   const auto problems = verify_datasets(datasets, 0);
   for (std::size_t i = 0; i < datasets.size(); ++i) {
-    const bool ok = problems[i].empty();
+    const std::string& problem = problems[i].problem;
+    const bool ok = problem.empty();
     nlohmann::json entry = {{"file", datasets[i].string()}, {"ok", ok}};
     if (!ok) {
       ++broken;
-      entry["error"] = problems[i];
-      if (!options.json) print("broken: ", problems[i], "\n");
+      entry["error"] = problem;
+      if (!options.json)
+        print(std::string(problems[i].was_read ? "broken: " : "not read: "), problem, "\n");
     }
     files.push_back(std::move(entry));
   }

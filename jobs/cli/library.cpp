@@ -179,7 +179,7 @@ int check(const LibraryOptions& options) {
   std::error_code ignored;
   if (!fs::exists(options.library, ignored))
     throw io::Error(options.library, "", "no such file", "check the path");
-  const std::string problem = verify_libraries({options.library}).front();
+  const auto [problem, was_read] = verify_libraries({options.library}).front();
   if (options.execution.json) {
     nlohmann::json document = {{"file", options.library}, {"ok", problem.empty()}};
     if (!problem.empty()) document["error"] = problem;
@@ -187,7 +187,7 @@ int check(const LibraryOptions& options) {
   } else if (problem.empty()) {
     print(options.library, ": every byte is as it was written\n");
   } else {
-    print("broken: ", problem, "\n");
+    print(std::string(was_read ? "broken: " : "not read: "), problem, "\n");
   }
   return problem.empty() ? kAllDone : kSomeFailed;
 }

@@ -72,6 +72,16 @@ class ChosenRunner {
   std::unique_ptr<SlurmRunner> slurm_;
 };
 
+/// Returns whether no output that was made lacks something that it was to have.
+bool is_complete(const RunResult& result) {
+  for (std::size_t i = 0; i < result.plan.size(); ++i) {
+    const Job& job = result.plan[i].job;
+    const auto told = job.kind->summary(job, result.outcomes[i].state);
+    if (told && told->is_incomplete) return false;
+  }
+  return true;
+}
+
 /// Prints what a run has done. Returns its exit code.
 int print_results(const ExecutionOptions& options, const PlanSource& source,
                   const RunResult& result, const std::vector<SubmittedStage>& submitted) {
@@ -90,7 +100,7 @@ int print_results(const ExecutionOptions& options, const PlanSource& source,
     print_run(result, notes);
   }
   if (result.summary.not_run > 0) return kStoppedEarly;
-  return result.summary.failed == 0 ? kAllDone : kSomeFailed;
+  return result.summary.failed == 0 && is_complete(result) ? kAllDone : kSomeFailed;
 }
 
 int run(const ExecutionOptions& options, const PlanSource& source) {

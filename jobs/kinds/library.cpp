@@ -96,11 +96,14 @@ class LibraryKind final : public TypedJobKind<LibraryJobData, LibraryJobResult> 
   }
 
   std::optional<JobSummary> summary(const Job& job, JobState state) const override {
-    const std::vector<std::string> missing = missing_models(job);
-    const std::size_t models = data(job).models.size() - missing.size();
+    const std::vector<std::string> missing = missing_models(job, state);
+    const std::size_t wanted = data(job).models.size();
+    const std::size_t models = wanted - missing.size();
     std::string text = "library: " + job.output.string() + ": ";
     if (is_made(state)) {
-      text += std::to_string(models) + " models";
+      text += std::to_string(models);
+      if (!missing.empty()) text += " of " + std::to_string(wanted);
+      text += " models";
       if (state == JobState::kUpToDate) text += ", up to date";
       text += missing_in_words(missing);
     } else {
@@ -111,7 +114,9 @@ class LibraryKind final : public TypedJobKind<LibraryJobData, LibraryJobResult> 
                                   {{"output", job.output.string()},
                                    {"state", name_of(state)},
                                    {"models", models},
-                                   {"missing", missing}}}}};
+                                   {"wanted", wanted},
+                                   {"missing", missing}}}},
+                      .is_incomplete = is_made(state) && !missing.empty()};
   }
 
   /// Removes partitions and runs of other models, which nothing needs any more.
@@ -161,11 +166,21 @@ std::string library_key(std::span<const std::string> run_keys,
   return io::xxh3_of_text(text);
 }
 
-std::vector<std::string> missing_models(const Job& library) {
-  std::vector<std::string> missing;
+std::vector<std::string> missing_models(const Job& library, JobState state) {
+  std::set<std::string> there;
   std::error_code ignored;
+  try {
+    if (is_made(state)) {
+      const io::HashLibrary made(library.output);
+      for (const io::ModelInfo& model : made.models()) there.insert(model.name);
+    }
+  } catch (const io::Error&) {
+  }
+  std::vector<std::string> missing;
   for (const std::string& model : LibraryKind::data(library).models)
-    if (!fs::exists(run_path(library.input, model), ignored)) missing.push_back(model);
+    if (is_made(state) ? !there.contains(model)
+                       : !fs::exists(run_path(library.input, model), ignored))
+      missing.push_back(model);
   return missing;
 }
 

@@ -30,7 +30,8 @@ Job library_job(LibraryJobData data, const std::filesystem::path& library,
 std::string library_key(std::span<const std::string> run_keys,
                         const RecognitionParameters& parameters);
 
-/// Returns the models of a planned library that have no run: the library does not hold them.
-std::vector<std::string> missing_models(const Job& library);
+/// Returns the models that a planned library was to have and does not hold. If it was not made,
+/// those that have no run.
+std::vector<std::string> missing_models(const Job& library, JobState state);
 
 }  // namespace semigeo::jobs

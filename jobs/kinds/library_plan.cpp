@@ -6,6 +6,7 @@
 
 #include "io/dataset/dataset.hpp"
 #include "io/files/error.hpp"
+#include "io/files/read_error.hpp"
 #include "io/library/triplet_run.hpp"
 #include "jobs/archive/verification.hpp"
 #include "jobs/kinds/library.hpp"
@@ -31,12 +32,23 @@ PlannedJob triplets_of(const LibraryModel& model, const fs::path& parts,
   return planned;
 }
 
-std::string problem_of_run(const fs::path& path) {
+Verified verify_run(const fs::path& path) {
   try {
     io::triplet_run_key(path);
-    return "";
+    return {};
+  } catch (const io::ReadError& error) {
+    return {.problem = error.what(), .was_read = false};
   } catch (const io::Error& error) {
-    return error.what();
+    return {.problem = error.what()};
+  }
+}
+
+/// Plans a job again whose output is damaged. If its output could not be read, it fails.
+void judge_again(PlannedJob& planned, const Verified& verified) {
+  if (!verified.was_read) {
+    fail_to_read(planned, verified.problem);
+  } else if (!verified.problem.empty()) {
+    plan_again(planned, verified.problem);
   }
 }
 
@@ -155,12 +167,10 @@ void verify_library_plan(std::vector<PlannedJob>& plan) {
     if (!planned.up_to_date) continue;
     const JobKind* kind = planned.job.kind;
     if (kind == &triplets_kind()) {
-      const std::string problem = problem_of_run(planned.job.output);
-      if (!problem.empty()) plan_again(planned, problem);
+      judge_again(planned, verify_run(planned.job.output));
     } else if (kind == &library_kind()) {
-      const std::string problem = verify_libraries({planned.job.output}).front();
-      if (problem.empty()) continue;
-      plan_again(planned, problem);
+      judge_again(planned, verify_libraries({planned.job.output}).front());
+      if (planned.up_to_date || !is_readable(planned)) continue;
       for (const std::size_t partition : planned.after) {
         plan[partition].up_to_date = false;
         judge_output(plan[partition]);

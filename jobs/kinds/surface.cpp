@@ -8,6 +8,7 @@
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
 #include "io/files/number_text.hpp"
+#include "io/files/read_error.hpp"
 #include "jobs/archive/scan_size.hpp"
 #include "jobs/plan/plan.hpp"
 #include "jobs/plan/typed_job_kind.hpp"
@@ -234,11 +235,14 @@ ReportLine evolution_line(const SurfaceJobResult& made) {
           .loss = static_cast<double>(lost) + (made.vanished ? kVanishedLoss : 0)};
 }
 
-/// Returns whether the sidecar could be made. If not, the dataset must be made, too.
+/// Returns whether the sidecar could be made. If not, the dataset must be made, too. Throws
+/// io::ReadError if the system refuses to read the dataset, which may be whole.
 bool remake_sidecar(const Job& job) {
   std::string text;
   try {
     text = io::sidecar_text(job.output);
+  } catch (const io::ReadError&) {
+    throw;
   } catch (const io::Error&) {
     return false;
   }

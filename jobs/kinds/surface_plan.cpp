@@ -1,13 +1,13 @@
 #include "jobs/kinds/surface_plan.hpp"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 #include "io/dataset/dataset.hpp"
 #include "io/dataset/xdmf.hpp"
 #include "io/files/error.hpp"
+#include "io/files/read_error.hpp"
+#include "io/files/small_file.hpp"
 #include "io/files/utf8.hpp"
 #include "jobs/archive/sources.hpp"
 #include "jobs/archive/verification.hpp"
@@ -37,35 +37,34 @@ std::vector<Reason> differences(const io::DatasetOrigin& origin, const Job& job)
 std::vector<Reason> reasons_of_dataset(const Job& job) {
   try {
     return differences(io::read_origin(job.output), job);
+  } catch (const io::ReadError&) {
+    throw;
   } catch (const io::Error& error) {
     return {{.kind = Kind::kUnusableDataset, .now = error.problem()}};
   }
 }
 
-/// Compares the dataset in the archive, if there is one, with what the job would make.
-void judge_dataset(PlannedJob& planned, DigestCache& cache) {
+/// Compares the dataset in the archive, if there is one, with what the job would make. If the
+/// system refuses to read it, the job fails: hours of work are not done again because of that.
+void judge_dataset(PlannedJob& planned, DigestCache& cache) try {
   const Job& job = planned.job;
-  std::error_code ignored;
-  if (!fs::exists(job.output, ignored)) {
+  if (!io::is_there(job.output)) {
     planned.reasons = {{.kind = Kind::kNoDataset}};
   } else if (const auto keys = cache.dataset_keys(job.name); !keys || keys->job_key != job.key) {
     planned.reasons = reasons_of_dataset(job);
-  } else if (!fs::exists(io::sidecar_of(job.output), ignored)) {
+  } else if (!io::is_there(io::sidecar_of(job.output))) {
     planned.reasons = {{.kind = Kind::kNoSidecar}};
     surface_data(planned.job).sidecar_only = true;
   } else {
     planned.up_to_date = true;
   }
-}
-
-std::string text_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
+} catch (const io::ReadError& error) {
+  fail_to_read(planned, error.what());
 }
 
 /// Returns whether the sidecar of a whole dataset says what it must.
 bool sidecar_is_right(const fs::path& dataset) {
-  return text_of(io::sidecar_of(dataset)) == io::sidecar_text(dataset);
+  return io::has_text(io::sidecar_of(dataset), io::sidecar_text(dataset));
 }
 
 }  // namespace
@@ -114,11 +113,13 @@ void verify_surfaces(std::vector<PlannedJob>& plan, int at_once) {
     jobs.push_back(&planned);
     datasets.push_back(planned.job.output);
   }
-  const std::vector<std::string> problems = verify_datasets(datasets, at_once);
+  const std::vector<Verified> problems = verify_datasets(datasets, at_once);
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     PlannedJob& planned = *jobs[i];
-    if (!problems[i].empty()) {
-      planned.reasons = {{.kind = Kind::kDamagedArrays, .now = problems[i]}};
+    if (!problems[i].was_read) {
+      fail_to_read(planned, problems[i].problem);
+    } else if (!problems[i].problem.empty()) {
+      planned.reasons = {{.kind = Kind::kDamagedArrays, .now = problems[i].problem}};
       surface_data(planned.job).sidecar_only = false;
     } else if (planned.up_to_date && !sidecar_is_right(datasets[i])) {
       planned.reasons = {{.kind = Kind::kDamagedSidecar}};

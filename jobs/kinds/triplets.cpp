@@ -2,6 +2,7 @@
 
 #include "io/dataset/dataset.hpp"
 #include "io/files/file_digest.hpp"
+#include "io/files/read_error.hpp"
 #include "io/library/triplet_run.hpp"
 #include "jobs/archive/scan_size.hpp"
 #include "jobs/kinds/dataset_estimate.hpp"
@@ -47,10 +48,14 @@ class TripletsKind final : public TypedJobKind<TripletsJobData, TripletsJobResul
     return is_complete(job);
   }
 
-  /// Removes the run of another dataset, which must not get into a library.
+  /// Removes the run of another dataset, which must not get into a library. What cannot be read
+  /// cannot get into it either, and stays.
   void remove_stale_output(const Job& job) const override {
     std::error_code ignored;
-    if (!is_complete(job)) fs::remove(job.output, ignored);
+    try {
+      if (!is_complete(job)) fs::remove(job.output, ignored);
+    } catch (const io::ReadError&) {
+    }
   }
 
   std::vector<ExternalFile> external_files(const PlannedJob& planned) const override {

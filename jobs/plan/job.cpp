@@ -1,6 +1,6 @@
 #include "jobs/plan/job.hpp"
 
-#include "io/files/error.hpp"
+#include "io/files/read_error.hpp"
 #include "jobs/plan/job_kind.hpp"
 
 namespace semigeo::jobs {
@@ -24,13 +24,14 @@ std::string output_key(const Job& job, KeyCheck check) {
 }
 
 std::string output_key(const JobKind& kind, const fs::path& output, KeyCheck check) {
-  std::error_code ignored;
-  if (!fs::exists(output, ignored)) return "";
+  if (!io::is_there(output)) return "";
   try {
     return kind.read_key(output, check);
+  } catch (const io::ReadError& error) {
+    if (!error.is_absent()) throw;
   } catch (const io::Error&) {
-    return "";
   }
+  return "";
 }
 
 bool is_complete(const Job& job) {

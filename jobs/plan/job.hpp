@@ -37,13 +37,14 @@ enum class KeyCheck {
 };
 
 /// Returns the key that the job's output carries. The key is empty if there is no output, or if it
-/// cannot be read.
+/// is damaged. Throws io::ReadError if the system refuses to read it: then nothing is known of it.
 std::string output_key(const Job& job, KeyCheck check = KeyCheck::kWhole);
 
 /// Returns the same for a file that a job of this kind makes.
 std::string output_key(const JobKind& kind, const std::filesystem::path& output, KeyCheck check);
 
-/// Returns whether the output is there in full and was made under the job's key.
+/// Returns whether the output is there in full and was made under the job's key. Throws
+/// io::ReadError as output_key does.
 bool is_complete(const Job& job);
 
 }  // namespace semigeo::jobs

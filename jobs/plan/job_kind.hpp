@@ -79,6 +79,7 @@ struct JobReport {
 struct JobSummary {
   std::string text;
   std::vector<std::pair<std::string, nlohmann::json>> fields;  ///< Members of the run's document.
+  bool is_incomplete = false;  ///< The output was made, but lacks something that it was to have.
 };
 
 /// Knows all that the program needs to know about one kind of job. Plan, executors, journal, graph

@@ -12,11 +12,12 @@ namespace semigeo::jobs {
 class OutputKeys {
  public:
   /// Returns the key in the head of a file that a job of this kind has made; empty if there is
-  /// none. A file that changes later keeps the key that was read first.
+  /// none. A file that changes later keeps the key that was read first. Throws io::ReadError if the
+  /// system refuses to read the file.
   const std::string& of(const JobKind& kind, const std::filesystem::path& output) {
-    const auto [at, is_new] = keys_.try_emplace(output);
-    if (is_new) at->second = output_key(kind, output, KeyCheck::kHead);
-    return at->second;
+    const auto known = keys_.find(output);
+    if (known != keys_.end()) return known->second;
+    return keys_[output] = output_key(kind, output, KeyCheck::kHead);
   }
 
  private:

@@ -1,5 +1,6 @@
 #include "jobs/plan/plan.hpp"
 
+#include "io/files/read_error.hpp"
 #include "jobs/plan/job_kind.hpp"
 
 namespace semigeo::jobs {
@@ -24,11 +25,10 @@ std::uintmax_t bytes_to_read(const PlannedJob& planned) {
                                   : planned.job.kind->bytes_to_read(planned.job);
 }
 
-void judge_output(PlannedJob& planned, KeyCheck check) {
+void judge_output(PlannedJob& planned, KeyCheck check) try {
   const Job& job = planned.job;
   const JobWords& words = job.kind->words();
-  std::error_code ignored;
-  if (!fs::exists(job.output, ignored)) {
+  if (!io::is_there(job.output)) {
     planned.reasons = {{.kind = Kind::kNoOutput, .before = words.output}};
   } else if (const std::string key = output_key(job, check); key.empty()) {
     planned.reasons = {{.kind = Kind::kUnusableOutput, .before = words.output}};
@@ -37,6 +37,14 @@ void judge_output(PlannedJob& planned, KeyCheck check) {
   } else {
     planned.up_to_date = true;
   }
+} catch (const io::ReadError& error) {
+  fail_to_read(planned, error.what());
+}
+
+void fail_to_read(PlannedJob& planned, const std::string& problem) {
+  planned.up_to_date = false;
+  planned.reasons.clear();
+  planned.error = problem;
 }
 
 void plan_again(PlannedJob& planned, const std::string& problem) {

@@ -41,8 +41,13 @@ ScanSize scan_size(const PlannedJob& planned);
 std::uintmax_t bytes_to_read(const PlannedJob& planned);
 
 /// Compares the key of the output that is there with the job's, and sets `up_to_date` or the reason
-/// why the job runs.
+/// why the job runs. If the system refuses to read the output, the job fails instead
+/// (fail_to_read).
 void judge_output(PlannedJob& planned, KeyCheck check = KeyCheck::kWhole);
+
+/// Marks a job as failed because the system refuses to read its output. What there is stays: it may
+/// be whole.
+void fail_to_read(PlannedJob& planned, const std::string& problem);
 
 /// Plans a job again whose output is damaged. `problem` says what is wrong.
 void plan_again(PlannedJob& planned, const std::string& problem);

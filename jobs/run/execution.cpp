@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "io/files/error.hpp"
+#include "io/files/read_error.hpp"
 #include "io/files/write_error.hpp"
 #include "jobs/plan/job_kind.hpp"
 #include "jobs/run/scheduler.hpp"
@@ -101,7 +102,9 @@ class Execution {
         return false;
       }
     } catch (const io::Error& e) {
-      kind.remove_stale_output(planned.job);
+      // What the system refuses to read may be what the output was made of.
+      const auto* refused = dynamic_cast<const io::ReadError*>(&e);
+      if (refused == nullptr || refused->is_absent()) kind.remove_stale_output(planned.job);
       outcomes_[job].error = e.what();
       end(job, scheduler_.follows_failure(job) ? JobState::kSkipped : JobState::kFailed);
       return false;

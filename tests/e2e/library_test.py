@@ -83,7 +83,7 @@ class BuildTest(LibraryTest):
         wanted = self.library.read_bytes()
         (self.scans / "0.ply").unlink()
         self.assertEqual(self.run_library()["library"], {"output": str(self.library), "state": "up to date",
-                                                         "models": 4, "missing": []})
+                                                         "models": 4, "wanted": 4, "missing": []})
         # Without a scan: by datasets alone.
         shutil.rmtree(self.parts)
         self.library.unlink()
@@ -99,7 +99,7 @@ class BuildTest(LibraryTest):
         again = self.run_library(code=1)
         self.assertEqual((again["failed"], again["skipped"], again["up_to_date"]), (1, 1, 10))
         said = self.semigeo("run", self.scans, "-o", self.archive, "--library", *LEVELS, code=1).stdout
-        self.assertIn("4 models, up to date; missing: bad.obj\n", said)
+        self.assertIn("4 of 5 models, up to date; missing: bad.obj\n", said)
         status = json.loads(self.semigeo("status", self.archive, "--json").stdout)
         self.assertEqual((status["state"], status["left"], status["skipped"]), ("ended", 0, 1))
 
@@ -116,6 +116,29 @@ class BuildTest(LibraryTest):
         fresh = self.folder / "fresh"
         self.run_library(archive=fresh)
         self.assertTrue(self.library.read_bytes() == (fresh / "library.h5").read_bytes())
+
+    def test_a_run_that_cannot_be_opened_is_neither_missing_nor_left_out(self):
+        self.run_library()
+        before = self.library.read_bytes()
+        run = self.archive / "library/triplets/1.ply.run"
+        data = run.read_bytes()
+        run.unlink()
+        run.symlink_to(run)  # ELOOP, even for root
+        for _ in range(2):
+            document = self.run_library(code=1)
+            self.assertEqual(document["failed"], 1)
+            job = next(job for job in document["jobs"] if job["kind"] == "triplets" and job["name"] == "1.ply")
+            self.assertTrue(job["error"].startswith(f"{run}: cannot be opened: "), job["error"])
+            self.assertEqual((document["library"]["models"], document["library"]["missing"]), (4, []))
+            self.assertTrue(self.library.read_bytes() == before)
+        self.library.unlink()  # and none is made without the model
+        document = self.run_library(code=1)
+        self.assertNotIn(document["library"]["state"], ("done", "up to date"))
+        self.assertFalse(self.library.exists())
+        run.unlink()
+        run.write_bytes(data)
+        self.run_library()
+        self.assertTrue(self.library.read_bytes() == before)
 
     def test_a_partition_that_fails_costs_the_library(self):
         process = self.semigeo("run", self.scans, "-o", self.archive, "--library", *LEVELS, code=1,

@@ -74,13 +74,28 @@ TEST_F(VerificationTest, EachHasItsOwnResult) {
   for (const int at_once : {0, 1, 3, 100}) {
     const auto problems = verify_datasets(datasets, at_once);
     ASSERT_EQ(problems.size(), 4u);
-    EXPECT_EQ(problems[0], "");
-    EXPECT_TRUE(problems[1].starts_with(datasets[1].string() + ": ")) << problems[1];
-    EXPECT_TRUE(problems[2].starts_with(datasets[2].string() + ": ")) << problems[2];
-    EXPECT_NE(problems[1].find("run with --verify"), std::string::npos) << problems[1];
-    EXPECT_EQ(problems[3], "");
+    EXPECT_EQ(problems[0].problem, "");
+    EXPECT_TRUE(problems[1].problem.starts_with(datasets[1].string() + ": "))
+        << problems[1].problem;
+    EXPECT_TRUE(problems[2].problem.starts_with(datasets[2].string() + ": "))
+        << problems[2].problem;
+    EXPECT_NE(problems[1].problem.find("run with --verify"), std::string::npos)
+        << problems[1].problem;
+    EXPECT_EQ(problems[3].problem, "");
+    EXPECT_TRUE(std::ranges::all_of(problems, &Verified::was_read));
   }
   EXPECT_TRUE(verify_datasets({}, 0).empty());
+}
+
+TEST_F(VerificationTest, WhatTheSystemRefusesIsNotDamaged) {
+  const fs::path circle = folder_ / "circle.vtkhdf";
+  fs::create_symlink(circle, circle);
+  for (const Verified& verified :
+       {verify_datasets({circle}, 1).front(), verify_libraries({circle}).front()}) {
+    EXPECT_FALSE(verified.was_read);
+    EXPECT_TRUE(verified.problem.starts_with(circle.string() + ": ")) << verified.problem;
+    EXPECT_EQ(verified.problem.find("damaged"), std::string::npos) << verified.problem;
+  }
 }
 
 // Bytes that nothing uses may change; whatever means something must not. The list of what the
@@ -98,10 +113,10 @@ TEST_F(VerificationTest, AWrongBitAnywhereIsFoundOrMeansNothing) {
   int crashes = 0;
   int endless = 0;
   for (std::size_t i = 0; i < datasets.size(); ++i) {
-    found += problems[i].empty() ? 0 : 1;
-    crashes += problems[i].find("crashes") != std::string::npos ? 1 : 0;
-    endless += problems[i].find("never ends") != std::string::npos ? 1 : 0;
-    if (problems[i].empty())
+    found += problems[i].problem.empty() ? 0 : 1;
+    crashes += problems[i].problem.find("crashes") != std::string::npos ? 1 : 0;
+    endless += problems[i].problem.find("never ends") != std::string::npos ? 1 : 0;
+    if (problems[i].problem.empty())
       ASSERT_TRUE(everything_in(io::Hdf5File::open(datasets[i]), "/") == wanted) << datasets[i];
   }
   EXPECT_GT(found, 100);

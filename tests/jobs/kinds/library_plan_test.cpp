@@ -65,6 +65,15 @@ class LibraryPlanTest : public testing::Test {
   tests::ScansToRun config_;
 };
 
+/// The files of one model of an archive.
+struct PlacesOfB {
+  explicit PlacesOfB(const fs::path& archive)
+      : dataset(dataset_path(archive, "b.obj")),
+        run(run_path(place_of_archive(archive).parts, "b.obj")),
+        library(place_of_archive(archive).library) {}
+  fs::path dataset, run, library;
+};
+
 TEST_F(LibraryPlanTest, AllOfItIsKnownBeforeAnythingRuns) {
   const auto before = plan();
   EXPECT_EQ(ids(before), (Names{"surface a.obj", "surface b.obj", "triplets a.obj",
@@ -99,10 +108,62 @@ TEST_F(LibraryPlanTest, AScanThatFailsCostsItsModelOnly) {
   using enum JobState;
   EXPECT_EQ(states(outcomes),
             (std::vector{kDone, kDone, kFailed, kDone, kDone, kSkipped, kDone, kDone}));
-  EXPECT_EQ(missing_models(planned.back().job), (Names{"bad.obj"}));
+  EXPECT_EQ(missing_models(planned.back().job, kDone), (Names{"bad.obj"}));
   // It fails again; what the others gave is up to date all the same.
   EXPECT_EQ(states(run(plan())), (std::vector{kUpToDate, kUpToDate, kFailed, kUpToDate, kUpToDate,
                                               kSkipped, kUpToDate, kUpToDate}));
+}
+
+/// Puts a file at the path that the system refuses to open, whoever asks for it (ELOOP).
+void refuse(const fs::path& path) {
+  fs::remove(path);
+  fs::create_symlink(path, path);
+}
+
+TEST_F(LibraryPlanTest, ARunThatCannotBeOpenedIsNotAbsent) {
+  run(plan());
+  const PlacesOfB b(config_.archive);
+  refuse(b.run);
+  using enum JobState;
+  auto outcomes = run(plan());
+  EXPECT_EQ(states(outcomes),
+            (std::vector{kUpToDate, kUpToDate, kUpToDate, kFailed, kUpToDate, kUpToDate}));
+  EXPECT_TRUE(outcomes[3].error.starts_with(b.run.string() + ": cannot be opened"))
+      << outcomes[3].error;
+  // A library without its model is not made.
+  fs::remove(b.library);
+  outcomes = run(plan());
+  EXPECT_EQ(outcomes[3].state, kFailed);
+  EXPECT_EQ(outcomes[5].state, kFailed);
+  EXPECT_TRUE(outcomes[5].error.starts_with(b.run.string() + ": ")) << outcomes[5].error;
+  EXPECT_FALSE(fs::exists(b.library));
+  EXPECT_TRUE(fs::is_symlink(b.run));  // nobody has removed what could not be read
+}
+
+TEST_F(LibraryPlanTest, ADatasetThatCannotBeOpenedIsNeitherMadeAgainNorLost) {
+  run(plan());
+  const PlacesOfB b(config_.archive);
+  refuse(b.dataset);
+  using enum JobState;
+  const auto outcomes = run(plan());
+  EXPECT_EQ(outcomes[1].state, kFailed);
+  EXPECT_TRUE(outcomes[1].error.starts_with(b.dataset.string() + ": ")) << outcomes[1].error;
+  EXPECT_TRUE(fs::is_symlink(b.dataset));
+  EXPECT_TRUE(fs::is_regular_file(b.run));
+}
+
+TEST_F(LibraryPlanTest, ALibraryNamesTheModelsThatItWasToHave) {
+  const auto planned = plan();
+  run(planned);
+  Job library = planned.back().job;
+  EXPECT_FALSE(library.kind->summary(library, JobState::kDone)->is_incomplete);
+  fs::remove(PlacesOfB(config_.archive).run);  // what counts is what the library holds
+  EXPECT_EQ(missing_models(library, JobState::kDone), Names{});
+  std::any_cast<LibraryJobData&>(library.data).models = {"a.obj", "b.obj", "c.obj"};
+  const auto told = library.kind->summary(library, JobState::kUpToDate);
+  EXPECT_TRUE(told->is_incomplete);
+  EXPECT_NE(told->text.find(": 2 of 3 models, up to date; missing: c.obj"), std::string::npos)
+      << told->text;
 }
 
 TEST_F(LibraryPlanTest, AnotherScanMakesItsModelAgain) {
