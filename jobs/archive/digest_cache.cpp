@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <ctime>
-#include <fstream>
-#include <iterator>
 #include <string_view>
 #include <utility>
 
@@ -15,6 +13,8 @@
 #include "io/files/atomic_file.hpp"
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
+#include "io/files/input_file.hpp"
+#include "io/files/small_file.hpp"
 
 namespace semigeo::jobs {
 namespace {
@@ -35,6 +35,20 @@ std::int64_t nanoseconds(const timespec& time) {
 std::string head_of(std::string_view body) {
   return "semigeo-digests 1 " + std::to_string(io::kDatasetFormatVersion) + ' ' +
          io::xxh3_of_text(body) + '\n';
+}
+
+/// Returns the text of the file. It is empty if the file cannot be read or is another: the digests
+/// are then computed again.
+std::string text_of(const fs::path& file) {
+  constexpr io::TextBounds kBounds = {.bytes = std::int64_t{256} << 20};
+  const std::string begin = head_of("").substr(0, head_of("").rfind(' '));
+  try {
+    std::string start(begin.size(), '\0');
+    if (io::InputFile(file).read_at(0, start) == start.size() && start == begin)
+      return io::read_text(file, kBounds);
+  } catch (const io::Error&) {
+  }
+  return "";
 }
 
 /// Removes the text before the next space from the line and returns it.
@@ -101,8 +115,7 @@ DigestCache::DigestCache(fs::path archive, Clock clock)
 
 DigestCache DigestCache::read(const fs::path& archive, Clock clock) {
   DigestCache cache(archive, clock);
-  std::ifstream stream(archive / kFileName, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  std::string text = text_of(archive / kFileName);
   const std::size_t head_end = text.find('\n');
   if (head_end == std::string::npos) return cache;
   std::string_view body = std::string_view(text).substr(head_end + 1);

@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "io/files/atomic_file.hpp"
+#include "io/files/error.hpp"
+#include "io/files/small_file.hpp"
 
 namespace semigeo::jobs {
 namespace {
@@ -133,10 +132,7 @@ Rates rates_in(const nlohmann::json& document, const std::string& format) {
           .microseconds = rate("microseconds_per_vertex_and_level", kMicroseconds)};
 }
 
-std::string text_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
+constexpr io::TextBounds kBounds = {.bytes = std::int64_t{1} << 20, .depth = 3};
 
 }  // namespace
 
@@ -145,13 +141,15 @@ Estimates::Estimates(std::map<std::string, Rates> by_format, Rates all)
 
 Estimates Estimates::read(const fs::path& archive) {
   try {
-    const auto document = nlohmann::json::parse(text_of(archive / kFileName));
+    const auto document = io::read_json(archive / kFileName, kBounds);
     std::map<std::string, Rates> by_format;
     for (const auto& [format, rates] : document.at("formats").items())
       by_format[format] = rates_in(rates, format);
     return {std::move(by_format), rates_in(document.at("all"), "")};
   } catch (const nlohmann::json::exception&) {
     return {};
+  } catch (const io::Error&) {
+    return {};  // they are learned again
   }
 }
 
@@ -184,7 +182,7 @@ void Estimates::write(const fs::path& archive) const {
   const nlohmann::json document = {{"all", json_of(all_)}, {"formats", formats}};
   const std::string text =
       document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
-  if (text != text_of(archive / kFileName)) io::write_file_atomically(archive / kFileName, text);
+  io::write_if_different(archive / kFileName, text);
 }
 
 void EstimateLearner::add(const JobEnded& job) {

@@ -1,8 +1,10 @@
 #include "jobs/archive/journal.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -11,6 +13,7 @@
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
 #include "io/files/input_file.hpp"
+#include "io/files/read_error.hpp"
 #include "jobs/archive/utc_time.hpp"
 
 namespace semigeo::jobs {
@@ -19,7 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kFileName = "journal.jsonl";
 constexpr std::string_view kBegin = "{\"crc\":\"";
 constexpr std::string_view kAfterChecksum = "\",";
 constexpr std::size_t kChecksumDigits = 8;
@@ -158,10 +160,13 @@ bool lacks_end(const engine::Descriptor& file) {
 }  // namespace
 
 Journal::Journal(const fs::path& archive, std::string run)
-    : path_(archive / kFileName),
+    : path_(archive / kJournalName),
       run_(std::move(run)),
-      file_(engine::open_file(path_, O_RDWR | O_APPEND | O_CREAT)),
+      file_(engine::open_file(path_, O_RDWR | O_APPEND | O_CREAT | O_NOFOLLOW | O_NONBLOCK)),
       torn_(file_ && lacks_end(file_)) {
+  if (!file_ && errno == ELOOP)
+    throw io::Error(path_, "", "is a symbolic link, which is not followed for writing",
+                    "put the file itself in its place");
   if (!file_) fail(path_, "cannot be opened: ", errno);
 }
 
@@ -180,21 +185,31 @@ void Journal::write(const JournalEvent& event) {
 }
 
 std::int64_t read_journal(const fs::path& archive,
-                          const std::function<void(const JournalEntry&)>& visit) {
-  const fs::path path = archive / kFileName;
-  std::error_code error;
-  if (fs::status(path, error).type() == fs::file_type::not_found) return 0;
-  io::InputFile file(path);
+                          const std::function<void(const JournalEntry&)>& visit,
+                          std::int64_t most_bytes) {
+  const fs::path path = archive / kJournalName;
+  if (!io::is_there(path)) return 0;
+  const io::InputFile file(path);
+  const auto size = static_cast<std::uint64_t>(file.size());
+  // Begins a byte early: if that byte ends a line, the line after it is whole.
+  std::uint64_t at =
+      file.size() > most_bytes ? size - static_cast<std::uint64_t>(most_bytes) - 1 : 0;
+  bool skipping = file.size() > most_bytes;  // the rest of a line whose beginning is not read
   std::vector<char> buffer(kLongestLine);
   std::string line;
   bool too_long = false;
   std::int64_t damaged = 0;
   const auto end_line = [&] {
-    if (too_long || !read_line(line, visit)) ++damaged;
+    if (!std::exchange(skipping, false) && (too_long || !read_line(line, visit))) ++damaged;
     line.clear();
     too_long = false;
   };
-  while (const std::size_t got = file.read(buffer)) {
+  // What is appended meanwhile is left to the next reader, so that this one ends.
+  while (at < size) {
+    const std::size_t got = file.read_at(
+        at, std::span(buffer).first(std::min<std::uint64_t>(buffer.size(), size - at)));
+    if (got == 0) break;
+    at += got;
     std::string_view piece(buffer.data(), got);
     while (!piece.empty()) {
       const std::size_t end = piece.find('\n');

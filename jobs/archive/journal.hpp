@@ -90,10 +90,17 @@ class Journal {
   bool torn_ = false;  ///< The last line has no end.
 };
 
+/// The name of the journal in its archive.
+inline constexpr const char* kJournalName = "journal.jsonl";
+/// The bytes at the end of a journal that are read: the lines of some ten thousand jobs.
+inline constexpr std::int64_t kJournalTail = std::int64_t{32} << 20;
+
 /// Calls `visit` for each entry of the journal, in order, and returns the number of damaged lines,
-/// which are passed over. Events of later versions are passed over too. An absent journal counts as
-/// empty. Throws io::Error if the journal cannot be read. Keeps one line in memory.
+/// which are passed over. Events of later versions are passed over too. If the journal has more
+/// than `most_bytes`, only the lines in its last bytes are read. An absent journal counts as empty.
+/// Throws io::Error if the journal cannot be read. Keeps one line in memory.
 std::int64_t read_journal(const std::filesystem::path& archive,
-                          const std::function<void(const JournalEntry&)>& visit);
+                          const std::function<void(const JournalEntry&)>& visit,
+                          std::int64_t most_bytes = kJournalTail);
 
 }  // namespace semigeo::jobs

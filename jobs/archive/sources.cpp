@@ -1,17 +1,16 @@
 #include "jobs/archive/sources.hpp"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
 #include <string_view>
 
-#include "io/files/atomic_file.hpp"
 #include "io/files/container.hpp"
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
+#include "io/files/read_error.hpp"
+#include "io/files/small_file.hpp"
 #include "jobs/archive/path_text.hpp"
 
 namespace semigeo::jobs {
@@ -20,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kFileName = "sources.json";
+constexpr io::TextBounds kBounds = {.bytes = std::int64_t{256} << 20, .depth = 1};
 constexpr std::string_view kMark = "--";  // a base never has this in the same place
 constexpr std::size_t kHashDigits = 8;
 
@@ -33,6 +33,11 @@ bool is_variant(const std::string& name, const std::string& base) {
                           name.starts_with(base + std::string(kMark)));
 }
 
+[[noreturn]] void refuse(const fs::path& file) {
+  throw io::Error(file, "", "is damaged: it must name a scan for each dataset",
+                  "remove it; datasets then count as made of the scans that are given next");
+}
+
 }  // namespace
 
 bool is_gone(const fs::path& scan) {
@@ -43,19 +48,14 @@ bool is_gone(const fs::path& scan) {
 Sources Sources::read(const fs::path& archive) {
   Sources sources;
   const fs::path file = archive / kFileName;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) {
-    std::error_code error;
-    if (!fs::exists(fs::status(file, error))) return sources;
-    throw io::Error(file, "", "cannot be read", "check its permissions");
-  }
+  if (!io::is_there(file)) return sources;
   try {
-    const auto document = nlohmann::json::parse(stream);
+    const auto document = io::read_json(file, kBounds);
+    if (document.is_discarded()) refuse(file);
     for (const auto& [name, path] : document.items())
       sources.by_name_[name] = unescaped(path.get<std::string>());
   } catch (const nlohmann::json::exception&) {
-    throw io::Error(file, "", "is damaged: it must name a scan for each dataset",
-                    "remove it; datasets then count as made of the scans that are given next");
+    refuse(file);
   }
   return sources;
 }
@@ -69,10 +69,7 @@ void Sources::write(const fs::path& archive) const {
   nlohmann::json document = nlohmann::json::object();
   for (const auto& [name, scan] : by_name_) document[name] = escaped(scan.string());
   const std::string text = document.dump(2) + "\n";
-  const fs::path file = archive / kFileName;
-  std::ifstream stream(file, std::ios::binary);
-  const std::string before{std::istreambuf_iterator<char>(stream), {}};
-  if (text != before) io::write_file_atomically(file, text);
+  io::write_if_different(archive / kFileName, text);
 }
 
 std::vector<std::string> choose_names(

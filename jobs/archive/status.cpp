@@ -14,10 +14,12 @@ namespace fs = std::filesystem;
 /// Reads the journal line by line, and starts again with every run.
 class Reader {
  public:
-  explicit Reader(ArchiveStatus& status) : status_(status) {}
+  Reader(ArchiveStatus& status, bool begins_late) : status_(status), begins_late_(begins_late) {}
 
   void read(const JournalEntry& entry) {
     if (const auto* run = std::get_if<RunStarted>(&entry.event)) begin(*run, entry);
+    // The beginning of a very long run is not read. Then the end of the journal begins within it.
+    if (begins_late_ && !status_.last_run) begin({}, entry);
     if (entry.run != run_) return;  // an event of another run
     last_time_ = entry.time;
     if (const auto* job = std::get_if<JobStarted>(&entry.event)) started_[job->job] = entry.time;
@@ -63,6 +65,7 @@ class Reader {
   }
 
   ArchiveStatus& status_;
+  bool begins_late_;  ///< The beginning of the journal is not read.
   std::string run_;
   std::string last_time_;
   std::map<std::string, std::string> started_;  ///< Start of jobs that have not ended.
@@ -97,7 +100,9 @@ ArchiveStatus status_of(const fs::path& archive) {
   ArchiveStatus status;
   status.owner = lock_owner(archive);
   status.datasets = std::ssize(dataset_files(archive / "scans"));
-  Reader reader(status);
+  std::error_code ignored;
+  const std::uintmax_t bytes = fs::file_size(archive / kJournalName, ignored);
+  Reader reader(status, !ignored && bytes > std::uintmax_t{kJournalTail});
   status.damaged_lines =
       read_journal(archive, [&](const JournalEntry& entry) { reader.read(entry); });
   reader.finish();

@@ -4,10 +4,13 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <new>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 
+#include "io/files/error.hpp"
+#include "io/files/small_file.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/output.hpp"
 #include "jobs/stages/chosen_instruction_set.hpp"
@@ -66,6 +69,17 @@ int run(int argc, char** argv) {
       "  semigeo bench                           how fast is this machine?\n");
   app.set_version_flag("--version", version);
   app.set_config("--config", "", "Read options from a TOML file like archive/semigeo.toml");
+  // The parser of options would wait for a pipe and read a file of any size.
+  app.get_config_ptr()->check(CLI::Validator(
+      [](const std::string& file) -> std::string {
+        try {
+          semigeo::io::read_text(file, {});
+          return "";
+        } catch (const semigeo::io::Error& e) {
+          return e.what();
+        }
+      },
+      "FILE"));
   app.allow_config_extras(CLI::config_extras_mode::error);
   app.require_subcommand(1);
   app.option_defaults()->always_capture_default();
@@ -91,6 +105,9 @@ int run(int argc, char** argv) {
     print_text(help.str());
     print_error(semigeo::io::printable_lines(problem.str()));
     return ok ? kAllDone : kUsage;
+  } catch (const std::bad_alloc&) {
+    complain("there is not enough memory; give less --memory or fewer --threads, or free some");
+    return kSomeFailed;
   } catch (const std::exception& e) {
     complain(e);
     return kSomeFailed;

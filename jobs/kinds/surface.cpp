@@ -241,8 +241,9 @@ bool remake_sidecar(const Job& job) {
   std::string text;
   try {
     text = io::sidecar_text(job.output);
-  } catch (const io::ReadError&) {
-    throw;
+  } catch (const io::ReadError& error) {
+    if (!error.is_absent()) throw;
+    return false;
   } catch (const io::Error&) {
     return false;
   }

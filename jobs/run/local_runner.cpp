@@ -5,14 +5,15 @@
 #include <algorithm>
 #include <csignal>
 #include <cstring>
-#include <fstream>
 #include <set>
+#include <sstream>
 #include <utility>
 
 #include "engine/descriptor.hpp"
 #include "engine/machine.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/files/error.hpp"
+#include "io/files/input_file.hpp"
 #include "jobs/plan/job_kind.hpp"
 #include "jobs/run/job_line.hpp"
 #include "jobs/run/job_logs.hpp"
@@ -31,9 +32,23 @@ constexpr std::uint64_t kLeastAddressSpace = std::uint64_t{2} << 30;
 constexpr std::uint64_t kAddressSpacePerThread = std::uint64_t{192} << 20;  // stacks and arenas
 constexpr std::size_t kLastLines = 3;
 
+/// Returns the end of a file, which may have any size. It is empty if the file cannot be read.
+std::string end_of(const fs::path& path) {
+  constexpr std::int64_t kMostBytes = 4096;
+  try {
+    const io::InputFile file(path);
+    const std::int64_t begin = std::max<std::int64_t>(0, file.size() - kMostBytes);
+    std::string text(static_cast<std::size_t>(file.size() - begin), '\0');
+    text.resize(file.read_at(static_cast<std::uint64_t>(begin), text));
+    return text;
+  } catch (const io::Error&) {
+    return "";
+  }
+}
+
 /// Returns the last lines that a job has printed, as one line.
 std::string last_lines(const fs::path& log) {
-  std::ifstream stream(log);
+  std::istringstream stream(end_of(log));
   std::vector<std::string> lines;
   for (std::string line; std::getline(stream, line);) {
     if (line.empty()) continue;
@@ -105,8 +120,8 @@ LocalRunner::Child LocalRunner::start_worker() {
       .append_to_log = true,
       .converses = true};
   // In somebody else's archive the log may not be writable.
-  const engine::Descriptor log(
-      open(command.log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
+  const engine::Descriptor log =
+      engine::open_file(command.log, O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW | O_NONBLOCK);
   if (!log) command.log.clear();
   return children_.start(command);
 }

@@ -1,8 +1,6 @@
 #include "jobs/stages/recognised_file.hpp"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <span>
@@ -10,6 +8,7 @@
 #include "io/files/atomic_file.hpp"
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
+#include "io/files/small_file.hpp"
 #include "io/files/utf8.hpp"
 
 namespace semigeo::jobs {
@@ -19,6 +18,7 @@ using nlohmann::json;
 
 constexpr const char* kFormat = "semigeo-recognition";
 constexpr int kFormatVersion = 1;
+constexpr io::TextBounds kBounds = {.bytes = std::int64_t{64} << 20};
 constexpr const char* kRemedy = "remove it, and recognise the scene again";
 
 /// Source: thesis 4.6, (4.21): scale, translation (d, h, q), angles gamma, beta, alpha.
@@ -109,10 +109,8 @@ void write_recognised(const std::filesystem::path& path, const std::string& key,
 }
 
 json read_recognised(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw io::Error(path, "", "cannot be read", "check the path and its permissions");
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  json document = json::parse(text, nullptr, false);
+  const std::string text = io::read_text(path, kBounds);
+  json document = io::parse_json(text, kBounds);
   if (!document.is_object() || document.value("format", json()) != kFormat)
     throw io::Error(path, "", "is not what semigeo has recognised, or is damaged", kRemedy);
   if (document.value("format_version", json()) != kFormatVersion)

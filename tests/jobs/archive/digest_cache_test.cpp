@@ -181,6 +181,12 @@ TEST_F(DigestCacheTest, ADamagedFileIsIgnored) {
   }
 }
 
+TEST_F(DigestCacheTest, WhatIsNoFileIsReplacedWithoutWaiting) {
+  ASSERT_EQ(mkfifo((folder_ / "digests.txt").c_str(), 0666), 0);
+  EXPECT_EQ(run({scan_}).front().error, "");
+  EXPECT_TRUE(fs::is_regular_file(folder_ / "digests.txt"));
+}
+
 TEST_F(DigestCacheTest, IsWrittenOnlyWhenItChanges) {
   run({scan_});
   const FileStamp before = *stamp_of(folder_ / "digests.txt");

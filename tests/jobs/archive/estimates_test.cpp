@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -167,6 +169,14 @@ TEST_F(StoredEstimatesTest, AbsentOrDamagedTheyAreBuiltIn) {
               Estimates().of({"OBJ", 1000}, 9, 1).peak_bytes)
         << text;
   }
+}
+
+TEST_F(StoredEstimatesTest, WhatIsNoFileIsPassedOverWithoutWaiting) {
+  ASSERT_EQ(mkfifo((folder_ / "estimates.json").c_str(), 0666), 0);
+  EXPECT_EQ(Estimates::read(folder_.path()).of({"PLY", 1000}, 9, 1).vertices,
+            Estimates().of({"PLY", 1000}, 9, 1).vertices);
+  learned({job(100'000, 30, 300, 10)}).write(folder_.path());
+  EXPECT_TRUE(fs::is_regular_file(folder_ / "estimates.json"));
 }
 
 TEST_F(StoredEstimatesTest, AreLearnedFromTheJournal) {

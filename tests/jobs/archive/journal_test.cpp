@@ -130,6 +130,27 @@ TEST_F(JournalTest, ATornLastLineIsPassedOverAndEndedBeforeTheNext) {
   }
 }
 
+TEST_F(JournalTest, OnlyTheEndOfALongOneIsRead) {
+  std::vector<std::size_t> ends = {0};
+  for (int i = 0; i < 4; ++i) {
+    write(JobStarted{.job = "surface " + std::to_string(i), .key = "k"});
+    ends.push_back(text().size());
+  }
+  // Wherever the end begins, every line that is wholly in it is read.
+  for (std::size_t bytes = 0; bytes <= ends.back() + 1; ++bytes) {
+    std::vector<std::string> jobs;
+    const auto damaged = read_journal(
+        folder_.path(),
+        [&](const JournalEntry& entry) { jobs.push_back(std::get<JobStarted>(entry.event).job); },
+        static_cast<std::int64_t>(bytes));
+    const auto whole = std::ranges::count_if(
+        ends, [&](std::size_t end) { return end < ends.back() && end + bytes >= ends.back(); });
+    EXPECT_EQ(std::ssize(jobs), whole) << bytes;
+    if (!jobs.empty()) EXPECT_EQ(jobs.back(), "surface 3");
+    EXPECT_EQ(damaged, 0) << bytes;
+  }
+}
+
 TEST_F(JournalTest, NonsenseIsCountedAndPassedOver) {
   write(kDone, "1");
   const std::string line = text();
@@ -198,6 +219,13 @@ TEST_F(JournalTest, LinesOfSeveralProcessesStandWhole) {
   }
   EXPECT_EQ(read().size(), std::size_t{kProcesses} * kLines);
   EXPECT_EQ(damaged_, 0);
+}
+
+TEST_F(JournalTest, ALinkIsNotFollowed) {
+  std::ofstream(folder_ / "elsewhere").flush();
+  fs::create_symlink(folder_ / "elsewhere", file());
+  EXPECT_THROW(write(kDone), io::Error);
+  EXPECT_EQ(fs::file_size(folder_ / "elsewhere"), 0u);
 }
 
 TEST_F(JournalTest, OneThatCannotBeOpenedIsNamed) {

@@ -69,6 +69,26 @@ TEST_F(SourcesTest, ADamagedFileIsNamed) {
   }
 }
 
+TEST_F(SourcesTest, WhatIsNoFileIsNamedWithoutWaiting) {
+  const fs::path file = folder_ / "sources.json";
+  ASSERT_EQ(mkfifo(file.c_str(), 0666), 0);
+  const auto sentence = [&]() -> std::string {
+    try {
+      Sources::read(folder_.path());
+      return "";
+    } catch (const io::Error& error) {
+      return error.what();
+    }
+  };
+  EXPECT_NE(sentence().find("is not a regular file"), std::string::npos) << sentence();
+  fs::remove(file);
+  fs::create_symlink(file, file);  // not absent: the archive would forget its names
+  EXPECT_NE(sentence().find("symbolic link"), std::string::npos) << sentence();
+  fs::remove(file);
+  std::ofstream(file) << std::string(1000, '[');
+  EXPECT_NE(sentence().find("is damaged"), std::string::npos) << sentence();
+}
+
 TEST_F(SourcesTest, AClaimHoldsWhileTheScanExists) {
   const fs::path first = add("a/x.ply");
   sources_.claim("x.ply", first);

@@ -92,6 +92,19 @@ TEST_F(StatusTest, OfTheLastOfSeveralRuns) {
   EXPECT_EQ(then.vertex_levels, 10);
 }
 
+TEST_F(StatusTest, OfARunWhoseBeginningIsFarBack) {
+  begin_run("one");
+  const fs::path journal = folder_ / "journal.jsonl";
+  std::ofstream(journal, std::ios::app) << std::string(100, ' ') << '\n';
+  fs::resize_file(journal, std::uintmax_t{8} << 30);  // gigabytes that take no room
+  std::ofstream(journal, std::ios::app) << '\n';
+  Journal(folder_.path(), "one").write(JobEnded{.job = "surface c", .state = "done"});
+  const ArchiveStatus now = status();
+  ASSERT_TRUE(now.last_run.has_value());
+  EXPECT_EQ(now.done, 1);
+  EXPECT_FALSE(now.ended);
+}
+
 TEST_F(StatusTest, OfAnArchiveThatHasNeverRun) {
   fs::create_directory(folder_ / "scans");
   std::ofstream(folder_ / "scans/a.vtkhdf");
