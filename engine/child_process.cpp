@@ -46,7 +46,7 @@ Descriptor open_log(const Command& command) {
   if (command.log.empty()) return open_file("/dev/null", O_WRONLY);
   if (command.log.has_parent_path()) std::filesystem::create_directories(command.log.parent_path());
   // Text is appended even to an empty file, so that writers do not overwrite each other.
-  const int flags = O_WRONLY | O_CREAT | O_APPEND;
+  const int flags = O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW;
   Descriptor log = open_file(command.log, command.append_to_log ? flags : flags | O_TRUNC);
   if (!log) fail("cannot open " + command.log.string());
   return log;

@@ -30,7 +30,7 @@ struct Command {
   std::vector<std::string> arguments;  ///< [0] is the path of the program. PATH is not searched.
   ProcessLimits limits = {};
   /// This file takes standard output and standard error. It is created together with its folder. If
-  /// the path is empty, both are dropped.
+  /// the path is empty, both are dropped. A symbolic link at the path is not followed.
   std::filesystem::path log = {};
   bool append_to_log = false;  ///< If false, the log starts empty.
   /// If true, the child gets lines on descriptor 0 and answers with lines on descriptor 3

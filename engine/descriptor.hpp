@@ -3,7 +3,10 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstddef>
 #include <filesystem>
+#include <string_view>
 #include <utility>
 
 namespace semigeo::engine {
@@ -35,9 +38,31 @@ class Descriptor {
 
 /// Opens a file with the flags of open(2). Child processes that run another program do not inherit
 /// the descriptor. A file that is created may be read and written by all whom the umask allows.
-/// Returns no descriptor if that fails; errno says why.
+/// A signal does not interrupt it. Returns no descriptor if that fails; errno says why.
 inline Descriptor open_file(const std::filesystem::path& path, int flags) {
-  return Descriptor(::open(path.c_str(), flags | O_CLOEXEC, 0666));
+  int descriptor;
+  do {
+    descriptor = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
+  } while (descriptor < 0 && errno == EINTR);
+  return Descriptor(descriptor);
+}
+
+/// Writes all bytes, however few the system takes at a time. Returns false with errno if it fails.
+inline bool write_all(const Descriptor& file, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(file.get(), bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+/// Forces what was written to the disk. Returns false with errno if it fails.
+inline bool sync_file(const Descriptor& file) {
+  while (::fsync(file.get()) != 0)
+    if (errno != EINTR) return false;
+  return true;
 }
 
 /// The two ends of a pipe.

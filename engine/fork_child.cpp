@@ -32,12 +32,7 @@ namespace {
   setrlimit(RLIMIT_CORE, &no_core);
   if (cpu_seconds > 0) limit_cpu_time(getpid(), cpu_seconds);
   const std::string text = work();
-  for (std::size_t at = 0; at < text.size();) {
-    const ssize_t written = write(answer.get(), text.data() + at, text.size() - at);
-    if (written < 0 && errno != EINTR) _exit(EXIT_FAILURE);
-    if (written > 0) at += static_cast<std::size_t>(written);
-  }
-  _exit(EXIT_SUCCESS);
+  _exit(write_all(answer, text) ? EXIT_SUCCESS : EXIT_FAILURE);
 }
 
 }  // namespace

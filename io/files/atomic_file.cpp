@@ -49,7 +49,7 @@ void sync_path(const std::filesystem::path& path, const std::filesystem::path& s
   const engine::Descriptor descriptor = engine::open_file(path, O_RDONLY | flags);
   if (!descriptor) fail(shown_as, "cannot open it to force it to the disk", errno);
   // Some network file systems know no fsync of a folder and say so with EINVAL.
-  if (fsync(descriptor.get()) != 0 && errno != EINVAL)
+  if (!engine::sync_file(descriptor) && errno != EINVAL)
     fail(shown_as, "cannot force it to the disk", errno);
 }
 
@@ -58,9 +58,11 @@ pid_t owner_of(std::string_view name, std::string_view host) {
   if (!name.starts_with('.') || !name.ends_with(kSuffix)) return 0;
   name.remove_suffix(kSuffix.size());
   const std::size_t dot = name.rfind('.');
+  if (dot == std::string_view::npos) return 0;
+  const std::string_view digits = name.substr(dot + 1);
   pid_t pid = 0;
-  const char* const end = name.data() + name.size();
-  const auto [stop, error] = std::from_chars(name.data() + dot + 1, end, pid);
+  const char* const end = digits.data() + digits.size();
+  const auto [stop, error] = std::from_chars(digits.data(), end, pid);
   if (error != std::errc() || stop != end || pid <= 0) return 0;
   name = name.substr(0, dot);
   const bool ours = name.size() > host.size() + 1 && name.ends_with(host) &&
@@ -123,14 +125,9 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
   AtomicFile file(path);
   {
     engine::Descriptor descriptor =
-        engine::open_file(file.temporary_path(), O_WRONLY | O_CREAT | O_TRUNC);
+        engine::open_file(file.temporary_path(), O_WRONLY | O_CREAT | O_EXCL);
     if (!descriptor) fail(path, "cannot create it", errno);
-    while (!content.empty()) {
-      const ssize_t written = ::write(descriptor.get(), content.data(), content.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) fail(path, "cannot write it", errno);
-      content.remove_prefix(static_cast<std::size_t>(written));
-    }
+    if (!engine::write_all(descriptor, content)) fail(path, "cannot write it", errno);
     if (descriptor.close() != 0) fail(path, "cannot write it", errno);
   }
   file.commit(folder);

@@ -14,7 +14,7 @@ constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
 }  // namespace
 
 OutputFile::OutputFile(const std::filesystem::path& path)
-    : file_(path), stream_(std::fopen(file_.temporary_path().c_str(), "wb")) {
+    : file_(path), stream_(std::fopen(file_.temporary_path().c_str(), "wbx")) {
   if (!stream_) fail("cannot be created");
   buffer_.reserve(kBufferBytes + 64);
 }

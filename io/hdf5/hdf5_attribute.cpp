@@ -2,6 +2,7 @@
 #include <string_view>
 
 #include "io/files/error.hpp"
+#include "io/files/utf8.hpp"
 #include "io/hdf5/hdf5.hpp"
 #include "io/hdf5/hdf5_library.hpp"
 
@@ -173,6 +174,7 @@ Hdf5Attribute Hdf5File::read(const Hdf5Handle& attribute, const std::string& obj
       std::string text(static_cast<std::size_t>(shape.count), '\0');
       const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose);
       read(type.get(), text.data());
+      if (!is_utf8(text)) refuse(place, "is no UTF-8 text");
       if (text != std::string(1, '\0'))
         result.value = text;  // HDF5 has no size of 0
       else

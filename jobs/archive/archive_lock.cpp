@@ -52,7 +52,10 @@ std::optional<Owner> owner_in(const std::string& text) {
 /// Returns the text of an open lock, or an empty text if it cannot be read.
 std::string content_of(const engine::Descriptor& lock) {
   std::array<char, 4096> buffer;
-  const ssize_t count = pread(lock.get(), buffer.data(), buffer.size(), 0);
+  ssize_t count;
+  do {
+    count = pread(lock.get(), buffer.data(), buffer.size(), 0);
+  } while (count < 0 && errno == EINTR);
   return count > 0 ? std::string(buffer.data(), static_cast<std::size_t>(count)) : std::string();
 }
 
@@ -109,7 +112,7 @@ bool is_at(const engine::Descriptor& lock, const fs::path& file) {
 /// Replaces the lock of a dead owner by `ours`. Throws LockedError if the owner is not dead.
 /// Returns false if the lock was freed or taken meanwhile; then the caller begins again.
 bool take_over(const fs::path& ours, const fs::path& file) {
-  const engine::Descriptor lock = engine::open_file(file, O_RDWR);
+  const engine::Descriptor lock = engine::open_file(file, O_RDWR | O_NONBLOCK | O_NOFOLLOW);
   if (!lock && errno == ENOENT) return false;
   if (!lock) fail(file, errno);
   const bool guarded = guard(lock);
@@ -133,8 +136,7 @@ ArchiveLock::ArchiveLock(const fs::path& archive)
         engine::open_file(ours.temporary_path(), O_WRONLY | O_CREAT | O_EXCL);
     if (!text) fail(file_, errno);
     const std::string content = text_of({owner_, utc_time()});
-    if (write(text.get(), content.data(), content.size()) != static_cast<ssize_t>(content.size()))
-      fail(file_, errno);
+    if (!engine::write_all(text, content)) fail(file_, errno);
   }
   ours.sync();
   while (!place(ours.temporary_path(), file_) && !take_over(ours.temporary_path(), file_)) {
@@ -145,13 +147,13 @@ ArchiveLock::~ArchiveLock() {
   if (owner_.pid != getpid()) return;
   // No process replaces the lock of a living owner. But if the lock was removed by hand, another
   // process may have it now.
-  const engine::Descriptor lock = engine::open_file(file_, O_RDONLY);
+  const engine::Descriptor lock = engine::open_file(file_, O_RDONLY | O_NONBLOCK);
   const auto owner = lock ? owner_in(content_of(lock)) : std::nullopt;
   if (owner && owner->process == owner_) unlink(file_.c_str());
 }
 
 std::optional<LockOwner> lock_owner(const fs::path& archive) {
-  const engine::Descriptor lock = engine::open_file(archive / kFileName, O_RDONLY);
+  const engine::Descriptor lock = engine::open_file(archive / kFileName, O_RDONLY | O_NONBLOCK);
   if (!lock) return std::nullopt;
   const auto owner = owner_in(content_of(lock));
   return owner && life_of(owner->process) != Life::kDead ? owner : std::nullopt;

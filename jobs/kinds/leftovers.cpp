@@ -9,6 +9,7 @@
 #include "io/files/container.hpp"
 #include "io/files/error.hpp"
 #include "jobs/archive/digest_cache.hpp"
+#include "jobs/archive/links.hpp"
 #include "jobs/archive/sources.hpp"
 #include "jobs/kinds/library_plan.hpp"
 #include "jobs/kinds/recognise_plan.hpp"
@@ -173,6 +174,7 @@ Leftovers find_leftovers(const fs::path& archive, const std::vector<fs::path>& f
 
 void remove_leftovers(const fs::path& archive, const std::vector<Leftover>& leftovers) {
   if (leftovers.empty()) return;
+  refuse_links(archive);
   Records records = records_of(archive);
   for (const Leftover& leftover : leftovers) {
     for (const fs::path& file : leftover.files) {

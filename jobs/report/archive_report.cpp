@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -32,13 +33,14 @@ struct SurfaceHistory {
 
 SurfaceHistory read_history(const fs::path& archive) {
   SurfaceHistory history;
-  read_journal(archive, [&](const JournalEntry& entry) {
+  const auto note = [&](const JournalEntry& entry) {
     const auto* job = std::get_if<JobEnded>(&entry.event);
     if (job == nullptr || !job->job.starts_with(kSurface)) return;
     const std::string name = job->job.substr(kSurface.size());
     history.last[name] = *job;
     if (job->state == "done") history.made[name] = *job;
-  });
+  };
+  read_journal(archive, note, std::numeric_limits<std::int64_t>::max());  // whole, for old scans
   return history;
 }
 

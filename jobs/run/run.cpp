@@ -10,6 +10,7 @@
 #include "io/files/error.hpp"
 #include "jobs/archive/archive_lock.hpp"
 #include "jobs/archive/estimates.hpp"
+#include "jobs/archive/links.hpp"
 #include "jobs/plan/job_kind.hpp"
 #include "jobs/run/job_logs.hpp"
 #include "jobs/run/process_usage.hpp"
@@ -77,6 +78,7 @@ class Run {
 
   void begin_journal() {
     if (!lock_) return;
+    refuse_links(settings_.home);
     io::remove_stale_partials(settings_.home);
     if (hooks_.prepare) hooks_.prepare(result_.plan);
     remove_damaged_outputs(result_.plan);

@@ -140,7 +140,8 @@ class JobLog {
     if (file_) fs::remove(path_, ignored);
     // Only the folder itself: an archive that is gone is not made again.
     fs::create_directory(path.parent_path(), ignored);
-    file_ = engine::Descriptor(open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
+    file_ = engine::Descriptor(open(
+        path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666));
     path_ = path;
     return static_cast<bool>(file_);
   }

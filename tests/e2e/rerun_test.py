@@ -2,6 +2,7 @@
 place nor time show in the bytes."""
 
 import os
+import resource
 import shutil
 import unittest
 
@@ -39,6 +40,48 @@ class RerunTest(SemigeoTest):
                          {"a.ply": "up to date", "b.ply": "up to date", "c.ply": "done"})
         self.assertEqual({name for name in before if before[name] != self.inode_of(name)},
                          {"c.ply"})
+
+    def test_pipes_and_brackets_in_the_place_of_small_files(self):
+        self.run_scans("--levels", 2)
+        for name in "estimates.json", "digests.txt", "sources.json":
+            for make in os.mkfifo, lambda path: path.write_bytes(b"[" * 10 ** 8):
+                path = self.archive / name
+                with self.subTest(name=name):
+                    data = path.read_bytes()
+                    path.unlink()
+                    make(path)
+                    process = self.semigeo("run", self.scans, "--output", self.archive, "--levels", 2,
+                                           code=1 if name == "sources.json" else 0)
+                    if name == "sources.json":
+                        self.assertIn(f"semigeo: {path}: ", process.stderr)
+                    path.unlink()
+                    path.write_bytes(data)
+        pipe = self.folder / "options.toml"
+        os.mkfifo(pipe)
+        process = self.semigeo("run", self.scans, "--output", self.archive, "--config", pipe, code=2)
+        self.assertIn("is not a regular file", process.stderr)
+
+    def test_too_little_memory_for_the_run_itself_is_a_sentence(self):
+        self.run_scans("--levels", 2)
+        (self.archive / "sources.json").write_bytes(b'{"a": "' + b"x" * 200_000_000 + b'"}')
+        most = 500 << 20
+        process = self.semigeo("run", self.scans, "--output", self.archive, "--levels", 2, code=1,
+                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (most, most)))
+        self.assertIn("semigeo: there is not enough memory", process.stderr)
+
+    def test_folders_that_are_links_are_not_written_through(self):
+        self.run_scans("--levels", 2)
+        for name in "scans", "logs":
+            with self.subTest(name=name):
+                elsewhere = self.folder / "elsewhere"
+                (self.archive / name).rename(elsewhere)
+                (self.archive / name).symlink_to(elsewhere)
+                before = sorted(elsewhere.iterdir())
+                process = self.semigeo("run", self.scans, "--output", self.archive, "--levels", 3, code=1)
+                self.assertIn(f"semigeo: {self.archive / name}: is a symbolic link", process.stderr)
+                self.assertEqual(sorted(elsewhere.iterdir()), before)
+                (self.archive / name).unlink()
+                elsewhere.rename(self.archive / name)
 
     def test_a_touched_scan_is_up_to_date(self):
         self.run_scans("--levels", 2)

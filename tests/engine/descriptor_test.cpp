@@ -1,10 +1,14 @@
 #include "engine/descriptor.hpp"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/time.h>
 
 #include <cerrno>
 #include <type_traits>
 
+#include "tests/support/file_size_limit.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace semigeo::engine {
@@ -31,6 +35,44 @@ TEST(Descriptor, ClosesWhatItOwnsOnce) {
   EXPECT_FALSE(file);
   EXPECT_EQ(file.get(), -1);
   EXPECT_EQ(file.close(), 0);
+}
+
+const char* pipe_to_open;
+volatile sig_atomic_t signals = 0;
+
+// The first signals interrupt whoever waits; a later one lets the pipe be opened.
+void interrupt(int) {
+  signals = signals + 1;
+  if (signals == 3) open(pipe_to_open, O_RDONLY | O_NONBLOCK);
+}
+
+TEST(Descriptor, ASignalDoesNotKeepAFileFromBeingOpened) {
+  const tests::TemporaryFolder folder;
+  const std::string path = (folder / "pipe").string();
+  ASSERT_EQ(mkfifo(path.c_str(), 0666), 0);
+  pipe_to_open = path.c_str();
+  signals = 0;
+  struct sigaction action = {}, before = {};
+  action.sa_handler = interrupt;  // without SA_RESTART
+  sigaction(SIGALRM, &action, &before);
+  const itimerval often = {{0, 1000}, {0, 1000}}, never = {};
+  setitimer(ITIMER_REAL, &often, nullptr);
+  const Descriptor pipe = open_file(path, O_WRONLY);  // waits for a reader
+  setitimer(ITIMER_REAL, &never, nullptr);
+  sigaction(SIGALRM, &before, nullptr);
+  EXPECT_TRUE(pipe);
+  EXPECT_GE(signals, 3);
+}
+
+TEST(Descriptor, AllIsWrittenOrTheErrorIsTold) {
+  const tests::TemporaryFolder folder;
+  const Descriptor file = open_file(folder / "file", O_RDWR | O_CREAT);
+  EXPECT_TRUE(write_all(file, "some text"));
+  EXPECT_TRUE(sync_file(file));
+  const tests::FileSizeLimit full(12);  // the first write is short, the second fails
+  EXPECT_FALSE(write_all(file, "more text"));
+  EXPECT_EQ(errno, EFBIG);
+  EXPECT_EQ(std::filesystem::file_size(folder / "file"), 12u);
 }
 
 TEST(Descriptor, TellsThatClosingFailed) {

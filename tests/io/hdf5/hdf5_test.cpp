@@ -71,6 +71,18 @@ TEST(Hdf5, LongAttributesAreRefused) {
   EXPECT_THROW(file.write_attribute("/", "longer", std::string(70000, 'x')), Error);
 }
 
+TEST(Hdf5, TextThatIsNotUtf8IsNamedWithItsFile) {
+  const tests::TemporaryFolder folder;
+  Hdf5File file = Hdf5File::create(folder / "a.h5");
+  file.write_attribute("/", "bytes", std::string("a\xff"));
+  file.close();
+  const Hdf5File read = Hdf5File::open(folder / "a.h5");
+  const std::string message = message_of([&] { read.read_attribute("/", "bytes"); });
+  EXPECT_TRUE(
+      message.starts_with((folder / "a.h5").string() + ": /, attribute bytes: is no UTF-8 text"))
+      << message;
+}
+
 TEST(Hdf5, ListsGroupsArraysAndLinks) {
   const tests::TemporaryFolder folder;
   Hdf5File file = Hdf5File::create(folder / "a.h5");

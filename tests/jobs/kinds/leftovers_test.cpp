@@ -192,6 +192,20 @@ TEST_F(LeftoversTest, TheRecordedFoldersAreTheHighestOnes) {
   EXPECT_TRUE(recorded_folders(folder_ / "in").empty());
 }
 
+TEST_F(LeftoversTest, NothingIsRemovedBehindALink) {
+  fs::remove(folder_ / "in/b.ply");
+  const std::vector<Leftover> found = find({"in"}).list;
+  for (const char* folder : {"scans", "logs", "library/triplets"}) {
+    const fs::path elsewhere = folder_ / "elsewhere";
+    fs::rename(archive_ / folder, elsewhere);
+    fs::create_directory_symlink(elsewhere, archive_ / folder);
+    EXPECT_THROW(remove_leftovers(archive_, found), io::Error) << folder;
+    fs::remove(archive_ / folder);
+    fs::rename(elsewhere, archive_ / folder);
+  }
+  EXPECT_TRUE(files().contains("scans/b.ply.vtkhdf"));
+}
+
 TEST_F(LeftoversTest, WhatCannotBeRemovedIsAnError) {
   fs::remove(folder_ / "in/b.ply");
   const std::vector<Leftover> found = find({"in"}).list;

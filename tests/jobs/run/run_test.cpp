@@ -89,6 +89,18 @@ TEST_F(RunTest, LocksPlansJournalsAndExecutesInThisOrder) {
   EXPECT_TRUE(warnings_.empty());
 }
 
+TEST_F(RunTest, FoldersThatAreLinksAreRefusedBeforeAnythingIsWritten) {
+  fs::create_directories(settings_.home);
+  fs::create_directories(folder_ / "elsewhere");
+  for (const char* name : {"scans", "logs", "recognised"}) {
+    fs::create_directory_symlink(folder_ / "elsewhere", settings_.home / name);
+    EXPECT_THROW(run(), io::Error) << name;
+    EXPECT_TRUE(journal().empty());
+    fs::remove(settings_.home / name);
+  }
+  EXPECT_TRUE(fs::is_empty(folder_ / "elsewhere"));
+}
+
 TEST_F(RunTest, TheHomeIsLockedUntilTheResultIsTold) {
   bool told = false;
   hooks_.ended = [&](const RunResult& result) {
