@@ -93,7 +93,7 @@ bool print_reports(const RunResult& result, const JobKind& kind) {
     const Job& job = result.plan[i].job;
     if (job.kind != &kind || !result.outcomes[i].result.has_value()) continue;
     const JobReport report = kind.report(job, result.outcomes[i].result);
-    const std::string name = report.name.empty() ? shown_name(job) : report.name;
+    const std::string name = report.name.empty() ? job.name : report.name;
     lines.resize(std::max(lines.size(), report.lines.size()));
     for (std::size_t k = 0; k < report.lines.size(); ++k)
       if (!report.lines[k].text.empty()) lines[k].push_back({name, report.lines[k]});
