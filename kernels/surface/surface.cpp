@@ -7,8 +7,8 @@
 
 namespace semigeo::kernels {
 
-/// The length of an outlier, in medians. The longest edges of thirty scans and models, uneven ones
-/// among them, have 18.
+/// The length of an outlier, in medians. The longest edges of 34 scans and models, uneven ones
+/// among them, have 19.6.
 constexpr double kOutlier = 20;
 /// The largest share of outliers. Two per cent of the edges end at the one per cent of pixels that
 /// a range scanner misses.
