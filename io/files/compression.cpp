@@ -1,7 +1,6 @@
 #include "io/files/compression.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <string>
 #include <utility>
 
@@ -9,6 +8,7 @@
 #include "io/files/growth.hpp"
 #include "io/files/gzip_stream.hpp"
 #include "io/files/libarchive.hpp"
+#include "io/files/lower_case.hpp"
 
 namespace semigeo::io {
 namespace {
@@ -117,8 +117,7 @@ const FileCompression* compression_of(std::string_view begin) {
 }
 
 const FileCompression* compression_of_name(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = lower_case(path.extension().string());
   const auto* const found =
       std::ranges::find(kFileCompressions, extension, &FileCompression::extension);
   return found == kFileCompressions.end() ? nullptr : found;

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <new>
 #include <set>
 
@@ -16,6 +15,7 @@
 #include "io/files/growth.hpp"
 #include "io/files/input_file.hpp"
 #include "io/files/libarchive.hpp"
+#include "io/files/lower_case.hpp"
 
 namespace semigeo::io {
 namespace {
@@ -24,11 +24,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kCopyAgain = "copy the container again from its source";
 constexpr const char* kDecrypt = "unpack it with its password and give the scans";
-
-std::string lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 /// Lets the calls of libarchive take and give names as UTF-8, whatever the locale of the program.
 class Utf8Names {

@@ -1,4 +1,5 @@
 #include "io/files/file_signature.hpp"
+#include "io/files/lower_case.hpp"
 
 #include <algorithm>
 #include <array>
@@ -67,10 +68,6 @@ constexpr FileSignature kZeros = {.what = "nothing but zeros",
                                   .is_zeros = true};
 constexpr FileSignature kUtf16 = {.what = "UTF-16 text", .remedy = kUtf8, .extension = ""};
 
-constexpr char lower(char c) {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
-
 std::string_view text_of(std::string_view begin) {
   if (begin.starts_with("\xef\xbb\xbf")) begin.remove_prefix(3);
   begin.remove_prefix(std::min(begin.find_first_not_of(" \t\r\n"), begin.size()));
@@ -81,8 +78,8 @@ bool matches(const Row& row, std::string_view begin) {
   const std::string_view bytes = row.is_text ? text_of(begin) : begin;
   if (bytes.size() < row.at) return false;
   const std::string_view found = bytes.substr(row.at, row.bytes.size());
-  return std::ranges::equal(found, row.bytes,
-                            [&](char a, char b) { return row.is_text ? lower(a) == b : a == b; });
+  return std::ranges::equal(
+      found, row.bytes, [&](char a, char b) { return row.is_text ? lower_case(a) == b : a == b; });
 }
 
 /// Returns whether every second byte is zero and the others are characters of ASCII text.

@@ -8,6 +8,7 @@
 #include "io/files/compression.hpp"
 #include "io/files/error.hpp"
 #include "io/files/file_signature.hpp"
+#include "io/files/lower_case.hpp"
 #include "io/scans/scan_formats.hpp"
 
 namespace semigeo::io {
@@ -15,16 +16,9 @@ namespace {
 
 constexpr std::size_t kVariantBytes = 1024;  // these many first bytes tell the variant, or the kind
 
-std::string lower_case_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return extension;
-}
-
 const ScanFormat* find_format(const std::filesystem::path& path) {
-  const std::string extension =
-      lower_case_extension(compression_of_name(path) == nullptr ? path : path.stem());
+  const std::filesystem::path name = compression_of_name(path) == nullptr ? path : path.stem();
+  const std::string extension = lower_case(name.extension().string());
   for (const ScanFormat* format : kScanFormats)
     if (format->extension == extension) return format;
   return nullptr;

@@ -6,6 +6,7 @@
 
 #include "io/files/binary_load.hpp"
 #include "io/files/error.hpp"
+#include "io/files/lower_case.hpp"
 #include "io/scans/scan_builder.hpp"
 #include "io/scans/scan_formats.hpp"
 #include "io/scans/text_scanner.hpp"
@@ -18,13 +19,8 @@ constexpr std::int64_t kPreambleBytes = kHeaderBytes + 4;
 constexpr std::int64_t kRecordBytes = 50;
 constexpr const char* kMendLine = "correct the line or export the scan again";
 
-char lower(char c) {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
-
-bool is_word(std::string_view text, std::string_view lower_case) {
-  return std::equal(text.begin(), text.end(), lower_case.begin(), lower_case.end(),
-                    [](char a, char b) { return lower(a) == b; });
+bool is_word(std::string_view text, std::string_view word) {
+  return std::ranges::equal(text, word, [](char a, char b) { return lower_case(a) == b; });
 }
 
 /// Returns whether the file is text. The keyword alone does not tell, because the free header of a

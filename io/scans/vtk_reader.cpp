@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/files/lower_case.hpp"
 #include "io/files/printable.hpp"
 #include "io/scans/scan_builder.hpp"
 #include "io/scans/scan_formats.hpp"
@@ -63,13 +64,6 @@ enum CellType : std::int64_t {
   kPixel = 8,
   kQuad = 9
 };
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
-}
 
 /// Reads a file of the older, "legacy" format. Its header and keywords are text; its numbers are
 /// text or big-endian.

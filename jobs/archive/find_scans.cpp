@@ -14,6 +14,7 @@
 #include "io/files/container.hpp"
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
+#include "io/files/lower_case.hpp"
 #include "io/scans/scan_reader.hpp"
 #include "jobs/archive/containers.hpp"
 
@@ -93,7 +94,7 @@ std::string kind_of(const fs::path& file) {
   constexpr std::size_t kLongest = 9;
   std::string extension = file.extension().string();
   if (extension.size() < 2 || extension.size() > kLongest) return kOtherKind;
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  extension = io::lower_case(extension);
   const bool plain = std::all_of(extension.begin() + 1, extension.end(), [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0;
   });

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cctype>
 #include <memory>
 #include <string>
 #include <vector>
@@ -7,6 +6,7 @@
 #include "io/dataset/dataset.hpp"
 #include "io/dataset/dataset_header.hpp"
 #include "io/files/error.hpp"
+#include "io/files/lower_case.hpp"
 #include "io/scans/feature_writer.hpp"
 #include "io/scans/mesh_writer.hpp"
 #include "jobs/cli/command.hpp"
@@ -33,9 +33,8 @@ enum class OutputFormat { kPly, kCsv };
 /// Returns the format that the extension names. A surface cannot be written as CSV.
 OutputFormat format_of(const ExportOptions& options) {
   const bool surface = options.features.empty() && options.contours.empty();
-  std::string extension = std::filesystem::path(options.output).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
+  const std::string extension =
+      io::lower_case(std::filesystem::path(options.output).extension().string());
   if (extension == ".ply") return OutputFormat::kPly;
   if (extension == ".csv" && !surface) return OutputFormat::kCsv;
   throw CLI::ValidationError("--output", options.output + " does not say how to write it: " +
