@@ -1,6 +1,7 @@
 #include "jobs/report/scan_report.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 
 #include "io/dataset/dataset_header.hpp"
 #include "io/files/error.hpp"
+#include "jobs/picture/robust_limit.hpp"
 #include "jobs/report/base64.hpp"
 #include "kernels/repair/decimation.hpp"
 #include "kernels/surface/vertex_rows.hpp"
@@ -97,19 +99,6 @@ std::vector<std::uint16_t> fractions(const std::vector<Vector3f>& points, const 
   return result;
 }
 
-/// Returns the 98th percentile of |value| over the valid vertices; 0 if there are none.
-float robust_limit(const std::vector<float>& values, const std::vector<float>& completeness) {
-  constexpr double kShare = 0.98;
-  std::vector<float> sizes;
-  for (std::size_t v = 0; v < values.size(); ++v)
-    if (completeness[v] > 0 && std::isfinite(values[v])) sizes.push_back(std::abs(values[v]));
-  if (sizes.empty()) return 0;
-  const auto place =
-      sizes.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(sizes.size() - 1));
-  std::ranges::nth_element(sizes, place);
-  return *place;
-}
-
 std::vector<float> shown_values(std::vector<float> values, const ShownLevel& shown) {
   return shown.rows.empty() ? std::move(values) : kernels::gathered(values, shown.rows);
 }
@@ -120,7 +109,8 @@ void add_fields(nlohmann::json& json, const io::Dataset& dataset, int level,
   for (const auto& [name, array] :
        {std::pair("K", "gaussian_curvature"), std::pair("H", "mean_curvature")}) {
     std::vector<float> values = dataset.read_floats(level, array);
-    json["limits"][name] = robust_limit(values, completeness);
+    const std::array<FieldValues, 1> field = {{{values, completeness}}};
+    json["limits"][name] = robust_limit(field);
     for (std::size_t v = 0; v < values.size(); ++v)
       if (completeness[v] <= 0) values[v] = std::numeric_limits<float>::quiet_NaN();
     json[name] = base64_of(shown_values(std::move(values), shown));

@@ -25,13 +25,14 @@ set(rules
 
   "jobs/archive: engine kernels io"
   "jobs/stages: engine kernels io"
-  "jobs/report: engine kernels io jobs/archive"
+  "jobs/picture: engine kernels io"
+  "jobs/report: engine kernels io jobs/archive jobs/picture"
   "jobs/plan: engine kernels io jobs/archive"
   "jobs/run: engine kernels io jobs/archive jobs/plan"
   "jobs/slurm: engine kernels io jobs/archive jobs/plan jobs/run"
   "jobs/kinds: engine kernels io jobs/archive jobs/plan jobs/stages"
   "jobs/bench: engine kernels io jobs/archive jobs/plan jobs/run jobs/stages"
-  "jobs/cli: engine kernels io jobs/archive jobs/plan jobs/run jobs/slurm jobs/kinds jobs/stages jobs/bench jobs/report")
+  "jobs/cli: engine kernels io jobs/archive jobs/plan jobs/run jobs/slurm jobs/kinds jobs/stages jobs/bench jobs/picture jobs/report")
 
 # Single headers that a layer may include besides.
 # Who owns a file descriptor is decided once, for engine, io and jobs.
@@ -40,7 +41,7 @@ set(exceptions "io:engine/descriptor.hpp")
 # Libraries, each with the one folder or layer that may include its headers.
 set(libraries "tbb/:engine" "nanoflann:kernels" "hdf5.h:io/hdf5" "zlib.h:io" "archive.h:io/files"
   "archive_entry.h:io/files" "libdeflate.h:io"
-  "xxhash.h:io" "pugixml:io" "CLI/:jobs/cli")
+  "xxhash.h:io" "pugixml:io" "png.h:io/files" "CLI/:jobs/cli")
 # Tests and benchmarks only: they make meshes that are none of ours.
 list(APPEND libraries "OpenMesh/:none")
 
