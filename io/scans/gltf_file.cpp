@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "io/files/base64.hpp"
 #include "io/files/binary_load.hpp"
 #include "io/files/error.hpp"
 #include "io/files/printable.hpp"
-#include "io/scans/base64.hpp"
 #include "io/scans/whole_source.hpp"
 
 namespace semigeo::io {

@@ -9,9 +9,9 @@
 #include <optional>
 #include <utility>
 
+#include "io/files/base64.hpp"
 #include "io/files/binary_load.hpp"
 #include "io/files/printable.hpp"
-#include "io/scans/base64.hpp"
 #include "io/scans/decimal.hpp"
 
 namespace semigeo::io {

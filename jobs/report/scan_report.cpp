@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "io/dataset/dataset_header.hpp"
+#include "io/files/base64.hpp"
 #include "io/files/error.hpp"
 #include "jobs/picture/robust_limit.hpp"
-#include "jobs/report/base64.hpp"
 #include "kernels/repair/decimation.hpp"
 #include "kernels/surface/vertex_rows.hpp"
 
@@ -113,26 +113,26 @@ void add_fields(nlohmann::json& json, const io::Dataset& dataset, int level,
     json["limits"][name] = robust_limit(field);
     for (std::size_t v = 0; v < values.size(); ++v)
       if (completeness[v] <= 0) values[v] = std::numeric_limits<float>::quiet_NaN();
-    json[name] = base64_of(shown_values(std::move(values), shown));
+    json[name] = io::base64_of(shown_values(std::move(values), shown));
   }
   json["invalid"] = std::ranges::count(completeness, 0.0f);
   std::vector<std::uint8_t> shares;
   for (const float c : shown_values(std::move(completeness), shown))
     shares.push_back(static_cast<std::uint8_t>(255 * std::clamp(c, 0.0f, 1.0f)));
-  json["completeness"] = base64_of(shares);
+  json["completeness"] = io::base64_of(shares);
 }
 
 void add_surface(nlohmann::json& json, const ShownLevel& shown, const Box& box) {
   json["low"] = {box.low.x(), box.low.y(), box.low.z()};
   json["size"] = box.size;
   json["shown_vertices"] = shown.points.size();
-  json["points"] = base64_of(fractions(shown.points, box));
-  if (!shown.rows.empty()) json["rows"] = base64_of(shown.rows);
+  json["points"] = io::base64_of(fractions(shown.points, box));
+  if (!shown.rows.empty()) json["rows"] = io::base64_of(shown.rows);
   std::vector<std::uint16_t> corners;
   for (const kernels::Triangle& triangle : shown.triangles)
     for (const std::int32_t corner : triangle)
       corners.push_back(static_cast<std::uint16_t>(corner));
-  json["triangles"] = base64_of(corners);
+  json["triangles"] = io::base64_of(corners);
 }
 
 /// Adds the most prominent features of each kind, at most as many of a kind as an eighth of the
@@ -148,7 +148,7 @@ void add_features(nlohmann::json& json, kernels::FeaturesByKind features, const 
     std::vector<Vector3f> points;
     for (const kernels::Feature& feature : all) points.push_back(feature.position);
     json["features"][kernels::kFeatureKindNames[kind]] = {
-        {"count", count}, {"points", base64_of(fractions(points, box))}};
+        {"count", count}, {"points", io::base64_of(fractions(points, box))}};
   }
 }
 
@@ -173,8 +173,8 @@ void add_contours(nlohmann::json& json, const io::Dataset& dataset, int level,
     }
     json["contours"][kernels::kFeatureKindNames[kind]] = {
         {"count", contours.count()},
-        {"points", base64_of(fractions(points, box))},
-        {"offsets", base64_of(offsets)}};
+        {"points", io::base64_of(fractions(points, box))},
+        {"offsets", io::base64_of(offsets)}};
   }
 }
 

@@ -1,28 +1,20 @@
 #pragma once
 
 #include <bit>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "io/files/base64.hpp"
 #include "tests/io/scans/scan_files.hpp"
 
-/// Files of glTF that are made by hand, and Base64.
+/// Files of glTF that are made by hand.
 namespace semigeo::io {
 
 /// Returns the bytes as Base64, with padding.
 inline std::string base64(std::string_view bytes) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    unsigned bits = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += i + k > bytes.size() ? '=' : kDigits[bits >> (18 - 6 * k) & 63];
-  }
-  return text;
+  return base64(std::as_bytes(std::span(bytes)));
 }
 
 /// Returns the bytes of numbers, one behind the other.

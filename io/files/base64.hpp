@@ -1,10 +1,21 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace semigeo::io {
+
+/// Returns bytes as Base64 with padding. Source: RFC 4648, section 4.
+std::string base64(std::span<const std::byte> bytes);
+
+/// Returns the bytes of numbers, in the order of this machine, as Base64.
+template <typename Number>
+std::string base64_of(const std::vector<Number>& numbers) {
+  return base64(std::as_bytes(std::span(numbers)));
+}
 
 /// Decodes Base64 text from front to back. Blanks and line ends are passed over. Padding may stand
 /// between two parts that were encoded each for itself, as in files of VTK.

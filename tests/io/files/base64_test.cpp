@@ -1,11 +1,18 @@
-#include "io/scans/base64.hpp"
+#include "io/files/base64.hpp"
 
 #include <gtest/gtest.h>
 
-#include "tests/io/scans/gltf_files.hpp"
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
 
 namespace semigeo::io {
 namespace {
+
+std::string encoded(std::string_view text) {
+  return base64(std::as_bytes(std::span(text)));
+}
 
 std::string decoded(std::string_view text, bool whole = true) {
   Base64Decoder decoder(text);
@@ -13,6 +20,19 @@ std::string decoded(std::string_view text, bool whole = true) {
   decoder.read(text.size(), bytes);
   EXPECT_EQ(decoder.at_end(), whole) << text;
   return bytes;
+}
+
+// RFC 4648, section 10.
+TEST(Base64, EncodesTheExamplesOfItsStandard) {
+  EXPECT_EQ(encoded(""), "");
+  EXPECT_EQ(encoded("f"), "Zg==");
+  EXPECT_EQ(encoded("fo"), "Zm8=");
+  EXPECT_EQ(encoded("foo"), "Zm9v");
+  EXPECT_EQ(encoded("foobar"), "Zm9vYmFy");
+}
+
+TEST(Base64, NumbersAreLittleEndian) {
+  EXPECT_EQ(base64_of(std::vector<std::uint16_t>{0xff00, 0x0001}), "AP8BAA==");
 }
 
 // RFC 4648, section 10.
@@ -29,7 +49,7 @@ TEST(Base64, DecodesTheExamplesOfItsStandard) {
 TEST(Base64, DecodesEveryByte) {
   std::string bytes;
   for (int i = 0; i < 256; ++i) bytes += static_cast<char>(i);
-  EXPECT_EQ(decoded(base64(bytes)), bytes);
+  EXPECT_EQ(decoded(encoded(bytes)), bytes);
 }
 
 TEST(Base64, PassesOverBlanksAndPaddingInTheMiddle) {
