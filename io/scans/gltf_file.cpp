@@ -283,4 +283,9 @@ std::vector<std::uint32_t> GltfFile::indices(std::int64_t accessor) {
   return read<std::uint32_t>(object, {.type = index_type(object)});
 }
 
+std::uint32_t GltfFile::largest_index(std::int64_t accessor) const {
+  const std::int64_t bytes = component_bytes(index_type(root().item("accessors", accessor)));
+  return static_cast<std::uint32_t>((std::uint64_t{1} << 8 * bytes) - 1);
+}
+
 }  // namespace semigeo::io

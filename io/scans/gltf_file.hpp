@@ -33,6 +33,8 @@ class GltfFile {
   std::vector<double> positions(std::int64_t accessor);
   /// Returns the numbers of an accessor of indices.
   std::vector<std::uint32_t> indices(std::int64_t accessor);
+  /// Returns the largest number that an accessor of indices could hold.
+  std::uint32_t largest_index(std::int64_t accessor) const;
 
  private:
   /// The types of components, by their numbers in the file.

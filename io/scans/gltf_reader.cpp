@@ -1,13 +1,16 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "io/files/error.hpp"
 #include "io/scans/gltf_file.hpp"
 #include "io/scans/scan_builder.hpp"
 #include "io/scans/scan_formats.hpp"
+#include "io/scans/triangle_strip.hpp"
 
 namespace semigeo::io {
 namespace {
@@ -125,13 +128,15 @@ class GltfScene {
     const GltfObject attributes = primitive.object("attributes");
     if (!attributes.has("POSITION")) return;  // the format allows it, and nothing can be shown
     const std::int64_t accessor = attributes.integer("POSITION");
-    const Points points = add_points(accessor, to_scene);
+    const Points points = add_points(accessor, to_scene, attributes);
     Corners corners{.first = points.first, .count = points.count};
     if (primitive.has("indices")) {
-      corners.indices = file_.indices(primitive.integer("indices"));
+      const std::int64_t accessor_of_indices = primitive.integer("indices");
+      corners.indices = file_.indices(accessor_of_indices);
       corners.count = std::ssize(corners.indices);
+      corners.restart = restart_of(primitive, accessor_of_indices, points);
       for (const std::uint32_t index : corners.indices)
-        if (index >= points.count)
+        if (index >= points.count && index != corners.restart)
           primitive.fail("a face refers to vertex " + std::to_string(index) + " of " +
                              std::to_string(points.count),
                          kExportAgain);
@@ -147,13 +152,30 @@ class GltfScene {
   struct Corners {
     std::int64_t first = 0, count = 0;
     std::vector<std::uint32_t> indices = {};  // none: the vertices one after the other
+    std::int64_t restart = -1;  // the index with which a new strip or fan begins, if there is one
     std::int64_t operator[](std::int64_t i) const {
       return first + (indices.empty() ? i : indices[static_cast<std::size_t>(i)]);
     }
+    /// Returns whether a new strip or fan begins here.
+    bool restarts(std::int64_t i) const {
+      return !indices.empty() && indices[static_cast<std::size_t>(i)] == restart;
+    }
   };
 
-  /// Adds the vertices of an accessor. Primitives of a mesh that share them get the same ones.
-  Points add_points(std::int64_t accessor, const Eigen::Affine3d& to_scene) {
+  /// Returns the index with which a new strip or fan begins, or -1. glTF has no such index, but
+  /// writers use what graphics cards take for it: the largest number of the type.
+  std::int64_t restart_of(const GltfObject& primitive, std::int64_t indices,
+                          const Points& points) const {
+    const std::int64_t mode = primitive.integer("mode", kTriangles);
+    if (mode != kTriangleStrip && mode != kTriangleFan) return -1;
+    const std::uint32_t largest = file_.largest_index(indices);
+    return largest < points.count ? -1 : std::int64_t{largest};
+  }
+
+  /// Adds the vertices of an accessor, and their normals. Primitives of a mesh that share them get
+  /// the same ones.
+  Points add_points(std::int64_t accessor, const Eigen::Affine3d& to_scene,
+                    const GltfObject& attributes) {
     const auto known = first_points_.find(accessor);
     if (known != first_points_.end()) return known->second;
     const std::vector<double> xyz = file_.positions(accessor);
@@ -162,7 +184,22 @@ class GltfScene {
       const Eigen::Vector3d p = to_scene * Eigen::Vector3d(&xyz[i]);
       builder_.add_point(p.x(), p.y(), p.z(), {Place::Unit::kVertex, builder_.point_count()});
     }
+    if (attributes.has("NORMAL")) add_normals(attributes, points, to_scene.linear());
     return first_points_[accessor] = points;
+  }
+
+  /// Adds the normals of vertices that were just added. Normals only help: damaged ones count as
+  /// none.
+  void add_normals(const GltfObject& attributes, const Points& points,
+                   const Eigen::Matrix3d& to_scene) try {
+    const std::vector<double> normals = file_.positions(attributes.integer("NORMAL"));
+    if (to_scene.determinant() == 0) return;
+    const Eigen::Matrix3d turn = to_scene.inverse().transpose();
+    for (std::int64_t i = 0; i < std::min(points.count, std::ssize(normals) / 3); ++i) {
+      const Eigen::Vector3d normal = turn * Eigen::Vector3d(&normals[3 * i]);
+      builder_.add_normal(points.first + i, normal.normalized().cast<float>());
+    }
+  } catch (const Error&) {
   }
 
   void add_faces(const GltfObject& primitive, const Corners& corners) {
@@ -176,10 +213,10 @@ class GltfScene {
         if (i < count) add_part(corners[i]);  // corners that make no triangle
         break;
       case kTriangleStrip:
-        for (; i + 2 < count; ++i) add(corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]);
+        add_strips(corners);
         break;
       case kTriangleFan:
-        for (; i + 2 < count; ++i) add(corners[i + 1], corners[i + 2], corners[0]);
+        add_fans(corners);
         break;
       case kPoints:
         for (; i < count; ++i) add_part(corners[i]);
@@ -191,6 +228,25 @@ class GltfScene {
       case kLineStrip:
         for (; i + (mode == kLineStrip ? 1 : 0) < count; ++i) add_part(corners[i]);
         break;
+    }
+  }
+
+  void add_strips(const Corners& corners) {
+    TriangleStrip strip;
+    for (std::int64_t i = 0; i < corners.count; ++i) {
+      if (corners.restarts(i)) {
+        strip.restart();
+      } else if (const auto triangle = strip.next(corners[i])) {
+        add((*triangle)[0], (*triangle)[1], (*triangle)[2]);
+      }
+    }
+  }
+
+  void add_fans(const Corners& corners) {
+    std::int64_t first = 0;
+    for (std::int64_t i = 0; i < corners.count; ++i) {
+      if (corners.restarts(i)) first = i + 1;
+      if (i - first >= 2) add(corners[i - 1], corners[i], corners[first]);
     }
   }
 

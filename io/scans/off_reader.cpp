@@ -1,10 +1,13 @@
+#include <Eigen/Core>
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "io/files/binary_load.hpp"
+#include "io/scans/decimal.hpp"
 #include "io/scans/scan_builder.hpp"
 #include "io/scans/scan_formats.hpp"
 #include "io/scans/text_scanner.hpp"
@@ -18,6 +21,9 @@ struct OffHeader {
   std::string keyword = "OFF";  ///< Its prefixes add data to vertices: "STCNOFF".
   bool binary = false;
   std::int64_t vertex_bytes = 12;  ///< Bytes of a binary vertex, with the data of prefixes.
+  bool homogeneous = false;  ///< Vertices have a fourth coordinate, by which they are divided.
+  bool normals = false;      ///< Normals follow the coordinates.
+  bool colours = false;      ///< Colours follow them.
 };
 
 /// Reads the keyword, which may be absent.
@@ -48,7 +54,15 @@ OffHeader read_keyword(TextScanner& scanner) {
     strip("C", 4);
     strip("N", 3);
   }
-  if (rest == "4OFF" || rest == "nOFF" || rest == "4nOFF")
+  const std::string_view prefixes = std::string_view(keyword).substr(0, off);
+  header.normals = prefixes.find('N') != std::string_view::npos;
+  header.colours = prefixes.find('C') != std::string_view::npos;
+  header.homogeneous = rest == "4OFF";
+  if (header.homogeneous) {
+    header.vertex_bytes += 4;
+    rest.remove_prefix(1);
+  }
+  if (rest == "nOFF" || rest == "4nOFF")
     scanner.fail("OFF files with other than three dimensions are not supported",
                  "export the scan in three dimensions");
   if (rest != "OFF")
@@ -74,19 +88,29 @@ struct Counts {
   std::int64_t faces = 0;
 };
 
+/// Adds a vertex. `w` divides its coordinates.
+void add_vertex(ScanBuilder& builder, const Eigen::Vector3d& xyz, double w, Place place) {
+  const Eigen::Vector3d p = w == 1 ? xyz : Eigen::Vector3d(xyz / w);
+  builder.add_point(p.x(), p.y(), p.z(), place);
+}
+
+/// Adds the normal of the last vertex. Some writers put colours before normals, so where there are
+/// colours, only what has the length of a normal is taken for one.
+void add_normal(ScanBuilder& builder, const Eigen::Vector3d& normal, const OffHeader& header) {
+  if (header.colours && std::abs(normal.norm() - 1) > 0.01) return;
+  builder.add_normal(builder.point_count() - 1, normal.cast<float>());
+}
+
 class OffText {
  public:
-  OffText(TextScanner& scanner, ScanBuilder& builder) : scanner_(scanner), builder_(builder) {}
+  OffText(TextScanner& scanner, ScanBuilder& builder, const OffHeader& header)
+      : scanner_(scanner), builder_(builder), header_(header) {}
 
   void read() {
     const Counts counts = read_counts();
     for (std::int64_t i = 0; i < counts.vertices; ++i) {
       begin_line("vertices", counts.vertices, i);
-      const Place place = this->place();
-      const double x = scanner_.number("the x coordinate");
-      const double y = next_number("the y coordinate");
-      const double z = next_number("the z coordinate");
-      builder_.add_point(x, y, z, place);
+      read_vertex();
       scanner_.next_line();  // passes over normals and colours, which some files do not announce
     }
     for (std::int64_t i = 0; i < counts.faces; ++i) {
@@ -99,6 +123,28 @@ class OffText {
 
  private:
   Place place() const { return {Place::Unit::kLine, scanner_.line()}; }
+
+  void read_vertex() {
+    const Place place = this->place();
+    const double x = scanner_.number("the x coordinate");
+    const double y = next_number("the y coordinate");
+    const double z = next_number("the z coordinate");
+    const double w = header_.homogeneous ? next_number("the fourth coordinate") : 1;
+    add_vertex(builder_, {x, y, z}, w, place);
+    if (header_.normals) read_normal();
+  }
+
+  /// Reads a normal. If no value follows the coordinates in the first line, values stand on lines
+  /// of their own. Otherwise a line that has fewer than three is without a normal.
+  void read_normal() {
+    if (builder_.point_count() == 1) spread_ = scanner_.at_line_end();
+    Eigen::Vector3d normal;
+    for (double& component : normal) {
+      if (!spread_ && scanner_.at_line_end()) return;
+      component = spread_ ? next_number("a normal") : parse_decimal(scanner_.word()).value;
+    }
+    add_normal(builder_, normal, header_);
+  }
 
   /// Values may stand on lines of their own.
   double next_number(std::string_view what) {
@@ -138,6 +184,8 @@ class OffText {
 
   TextScanner& scanner_;
   ScanBuilder& builder_;
+  const OffHeader& header_;
+  bool spread_ = false;  // values stand on lines of their own
   std::vector<std::int64_t> corners_;
 };
 
@@ -145,19 +193,13 @@ class OffText {
 /// each face its corners and the components of its colour, each list after its length.
 class OffBinary {
  public:
-  OffBinary(ByteSource& source, ScanBuilder& builder) : source_(source), builder_(builder) {}
+  OffBinary(ByteSource& source, ScanBuilder& builder, const OffHeader& header)
+      : source_(source), builder_(builder), header_(header) {}
 
-  void read(std::int64_t vertex_bytes) {
-    const Counts counts = read_counts(vertex_bytes);
+  void read() {
+    const Counts counts = read_counts();
     begin("vertices", counts.vertices);
-    for (; index_ < counts.vertices; ++index_) {
-      const Place place = this->place();
-      const double x = next<float>();
-      const double y = next<float>();
-      const double z = next<float>();
-      builder_.add_point(x, y, z, place);
-      skip(vertex_bytes - 12);
-    }
+    for (; index_ < counts.vertices; ++index_) read_vertex();
     begin("faces", counts.faces);
     for (; index_ < counts.faces; ++index_) read_face();
   }
@@ -171,7 +213,21 @@ class OffBinary {
     index_ = 0;
   }
 
-  Counts read_counts(std::int64_t vertex_bytes) {
+  void read_vertex() {
+    const std::int64_t end = source_.position() + header_.vertex_bytes;
+    const Place place = this->place();
+    Eigen::Vector3d xyz;
+    for (double& coordinate : xyz) coordinate = next<float>();
+    add_vertex(builder_, xyz, header_.homogeneous ? next<float>() : 1, place);
+    if (header_.normals) {
+      Eigen::Vector3d normal;
+      for (double& component : normal) component = next<float>();
+      add_normal(builder_, normal, header_);
+    }
+    skip(end - source_.position());
+  }
+
+  Counts read_counts() {
     const Place place = this->place();
     begin("counts", 3);
     const std::int64_t vertices = next<std::int32_t>();
@@ -179,7 +235,7 @@ class OffBinary {
     next<std::int32_t>();  // edges
     if (vertices < 0 || faces < 0)
       builder_.fail(place, "the header has a negative count", "export the scan again");
-    builder_.promise_points(vertices, vertex_bytes, place);
+    builder_.promise_points(vertices, header_.vertex_bytes, place);
     builder_.promise_faces(faces, 8, place);
     return {.vertices = vertices, .faces = faces};
   }
@@ -221,6 +277,7 @@ class OffBinary {
 
   ByteSource& source_;
   ScanBuilder& builder_;
+  const OffHeader& header_;
   std::string_view what_;
   std::int64_t promised_ = 0;
   std::int64_t index_ = 0;
@@ -233,10 +290,10 @@ Scan read_off(ByteSource& source, const ScanOptions& options) {
   const OffHeader header = read_header(scanner);
   scanner.release();
   if (header.binary) {
-    OffBinary(source, builder).read(header.vertex_bytes);
+    OffBinary(source, builder, header).read();
     return builder.finish(header.keyword + " binary");
   }
-  OffText(scanner, builder).read();
+  OffText(scanner, builder, header).read();
   return builder.finish(header.keyword);
 }
 

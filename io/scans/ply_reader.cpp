@@ -8,6 +8,7 @@
 #include "io/scans/ply_header.hpp"
 #include "io/scans/scan_builder.hpp"
 #include "io/scans/scan_formats.hpp"
+#include "io/scans/triangle_strip.hpp"
 
 namespace semigeo::io {
 namespace {
@@ -88,30 +89,6 @@ const PlyElement* find_grid(const PlyHeader& header, const ScanBuilder& builder)
   return grid;
 }
 
-/// Makes the triangles of a strip: each corner with the two before it, every second time in the
-/// opposite order. -1 starts a new strip. Repeated corners, which only steer the strip, make no
-/// face.
-class TriangleStrip {
- public:
-  explicit TriangleStrip(ScanBuilder& builder) : builder_(builder) {}
-  void add(std::int64_t corner, Place place) {
-    if (corner == -1) {
-      length_ = 0;
-      return;
-    }
-    if (++length_ >= 3 && a_ != b_ && b_ != corner && a_ != corner) {
-      const bool turned = length_ % 2 == 0;
-      builder_.add_face(std::array{turned ? b_ : a_, turned ? a_ : b_, corner}, place);
-    }
-    a_ = b_;
-    b_ = corner;
-  }
-
- private:
-  ScanBuilder& builder_;
-  std::int64_t length_ = 0, a_ = 0, b_ = 0;
-};
-
 /// Reads the elements in the order of the file.
 template <typename Decoder>
 class PlyBody {
@@ -189,9 +166,14 @@ class PlyBody {
 
   void read_strips(const PlyElement& element) {
     read_lists(element, [&](const PlyProperty& list, std::int64_t length) {
-      TriangleStrip strip(builder_);
-      decoder_.items(list, length,
-                     [&](std::int64_t corner) { strip.add(corner, decoder_.place()); });
+      TriangleStrip strip;
+      decoder_.items(list, length, [&](std::int64_t corner) {
+        if (corner == -1) {
+          strip.restart();
+        } else if (const auto triangle = strip.next(corner)) {
+          builder_.add_face(*triangle, decoder_.place());
+        }
+      });
     });
   }
 

@@ -1,9 +1,9 @@
 #include "io/scans/vtk_cells.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "io/files/binary_load.hpp"
+#include "io/scans/triangle_strip.hpp"
 
 namespace semigeo::io {
 namespace {
@@ -55,11 +55,10 @@ void add_vtk_polygon(ScanBuilder& builder, std::span<const std::int64_t> corners
 
 void add_vtk_strip(ScanBuilder& builder, std::span<const std::int64_t> corners, std::int64_t face) {
   if (corners.size() < 3) return add_vtk_part(builder, corners, face);
-  for (std::size_t i = 0; i + 2 < corners.size(); ++i) {
-    const std::size_t odd = i % 2;  // every second triangle faces the other way in the strip
-    builder.add_face(std::array{corners[i + odd], corners[i + 1 - odd], corners[i + 2]},
-                     {Place::Unit::kFace, face});
-  }
+  TriangleStrip strip;
+  for (const std::int64_t corner : corners)
+    if (const auto triangle = strip.next(corner))
+      builder.add_face(*triangle, {Place::Unit::kFace, face});
 }
 
 void add_vtk_part(ScanBuilder& builder, std::span<const std::int64_t> corners, std::int64_t face) {

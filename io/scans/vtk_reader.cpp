@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/files/error.hpp"
 #include "io/files/lower_case.hpp"
 #include "io/files/printable.hpp"
 #include "io/scans/scan_builder.hpp"
@@ -130,11 +131,11 @@ class VtkReader {
     } else if (keyword == "cell_types") {
       cell_types_ = read_numbers(count("the number of cells"), {Kind::kSigned, 4}, "cell types");
     } else if (keyword == "metadata") {
-      while (scanner_->next_line() && !scanner_->at_line_end()) {
-      }
+      skip_metadata();
     } else if (keyword == "field") {
       skip_field();
     } else if (keyword == "point_data" || keyword == "cell_data") {
+      read_data(keyword);
       scanner_->release();
       source_.skip(std::numeric_limits<std::int64_t>::max());
       return false;
@@ -282,6 +283,86 @@ class VtkReader {
     return cells;
   }
 
+  /// Reads normals from the data of points and cells, of which the keyword tells one. Normals only
+  /// help: behind what cannot be read, there are none.
+  void read_data(std::string keyword) try {
+    bool of_points = false;
+    std::int64_t tuples = 0;
+    do {
+      if (keyword == "point_data" || keyword == "cell_data") {
+        of_points = keyword == "point_data";
+        tuples = count("the number of tuples");
+        scanner_->next_line();
+      } else {
+        read_attribute(keyword, tuples, of_points);
+      }
+      if (!scanner_->skip_to_content()) return;
+      keyword = lower_case(scanner_->word());
+    } while (!keyword.empty());
+  } catch (const Error&) {
+  }
+
+  /// Reads an array of the data: normals of points, or anything else, which is passed over.
+  void read_attribute(const std::string& keyword, std::int64_t tuples, bool of_points) {
+    if (keyword == "field") return skip_field();
+    if (keyword == "metadata") return skip_metadata();
+    scanner_->word();  // its name
+    if (keyword == "normals" && of_points) return read_normals(tuples);
+    if (keyword == "lookup_table")
+      return skip_values(4 * count("the number of colours"), {Kind::kUnsigned, 1});
+    if (keyword == "color_scalars")
+      return skip_values(product(count("the number of components"), tuples), {Kind::kUnsigned, 1});
+    const std::int64_t first = keyword == "texture_coordinates" ? count("the dimension") : 0;
+    const VtkType type = read_type();
+    if (keyword != "scalars")
+      return skip_values(product(components_of(keyword, first), tuples), type);
+    const std::int64_t components = scanner_->at_line_end() ? 1 : count("the number of components");
+    scanner_->next_line();
+    if (lower_case(scanner_->peek()) != "lookup_table")
+      scanner_->fail("there is no LOOKUP_TABLE behind the scalars", kExportAgain);
+    scanner_->word();
+    scanner_->word();  // the name of the table
+    skip_values(product(components, tuples), type);
+  }
+
+  /// Returns how many numbers a tuple of an array has.
+  std::int64_t components_of(const std::string& keyword, std::int64_t dimension) const {
+    if (keyword == "vectors" || keyword == "normals") return 3;
+    if (keyword == "tensors") return 9;
+    if (keyword == "tensors6") return 6;
+    if (keyword == "texture_coordinates") return dimension;
+    if (keyword == "global_ids" || keyword == "pedigree_ids") return 1;
+    scanner_->fail("the data is of an unknown kind", kExportAgain);
+  }
+
+  void read_normals(std::int64_t tuples) {
+    const VtkType type = read_type();
+    scanner_->next_line();
+    Eigen::Vector3f normal;
+    for_each_number<double>(3 * tuples, type, "normals", [&](std::int64_t i, double number) {
+      normal[i % 3] = static_cast<float>(number);
+      if (i % 3 == 2) builder_.add_normal(i / 3, normal);
+    });
+  }
+
+  void skip_metadata() {
+    while (scanner_->next_line() && !scanner_->at_line_end()) {
+    }
+  }
+
+  /// Passes over numbers that begin in the next line.
+  void skip_values(std::int64_t values, VtkType type) {
+    if (binary_) {
+      scanner_->next_line();
+      return skip_bytes(type.bytes * values);
+    }
+    for (std::int64_t i = 0; i < values; ++i) {
+      if (scanner_->at_line_end() && !scanner_->skip_to_content())
+        builder_.fail_promise("values of an array", values, i, place());
+      scanner_->word();
+    }
+  }
+
   /// Passes over arrays that have names of their own.
   void skip_field() {
     scanner_->word();
@@ -292,10 +373,14 @@ class VtkReader {
       scanner_->word();
       const std::int64_t components = count("the number of components");
       const std::int64_t tuples = count("the number of tuples");
-      if (components > 0 && tuples > kMostNumbers / components)
-        scanner_->fail("the array is too large", kExportAgain);
-      skip_array(components * tuples);
+      skip_array(product(components, tuples));
     }
+  }
+
+  std::int64_t product(std::int64_t components, std::int64_t tuples) const {
+    if (components > 0 && tuples > kMostNumbers / components)
+      scanner_->fail("the array is too large", kExportAgain);
+    return components * tuples;
   }
 
   void skip_array(std::int64_t values) {
@@ -306,17 +391,7 @@ class VtkReader {
       while (!scanner_->at_line_end()) scanner_->word();
       return;
     }
-    const VtkType type = read_type();
-    if (binary_) {
-      scanner_->next_line();
-      skip_bytes(type.bytes * values);
-      return;
-    }
-    for (std::int64_t i = 0; i < values; ++i) {
-      if (scanner_->at_line_end() && !scanner_->skip_to_content())
-        builder_.fail_promise("values of an array", values, i, place());
-      scanner_->word();
-    }
+    skip_values(values, read_type());
   }
 
   void skip_bytes(std::int64_t bytes) {

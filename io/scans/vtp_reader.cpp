@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/files/error.hpp"
 #include "io/files/printable.hpp"
 #include "io/scans/scan_builder.hpp"
 #include "io/scans/scan_formats.hpp"
@@ -103,10 +104,22 @@ class VtpReader {
     for (std::size_t i = 0; i < xyz.size(); i += 3)
       builder_.add_point(xyz[i], xyz[i + 1], xyz[i + 2],
                          {Place::Unit::kVertex, builder_.point_count()});
+    read_normals(piece.child("PointData"), first, points);
     read_cells(piece, first, "Polys", "NumberOfPolys", add_vtk_polygon);
     read_cells(piece, first, "Strips", "NumberOfStrips", add_vtk_strip);
     read_cells(piece, first, "Lines", "NumberOfLines", add_vtk_part);
     read_cells(piece, first, "Verts", "NumberOfVerts", add_vtk_part);
+  }
+
+  /// Reads the normals of points. Normals only help: damaged ones count as none.
+  void read_normals(pugi::xml_node data, std::int64_t first, std::int64_t points) try {
+    const char* const name = data.attribute("Normals").as_string("Normals");
+    const pugi::xml_node array = data.find_child_by_attribute("DataArray", "Name", name);
+    if (array.attribute("NumberOfComponents").as_int() != 3) return;
+    const std::vector<double> xyz = arrays_.numbers(array, 3 * points);
+    for (std::int64_t i = 0; i < points; ++i)
+      builder_.add_normal(first + i, Eigen::Vector3d(&xyz[3 * i]).cast<float>());
+  } catch (const Error&) {
   }
 
   using AddCell = void(ScanBuilder&, std::span<const std::int64_t>, std::int64_t);

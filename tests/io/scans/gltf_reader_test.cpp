@@ -59,9 +59,59 @@ TEST_F(GltfReader, ReadsEveryMode) {
   };
   EXPECT_EQ(triangles(4, false), (Triangles{{0, 1, 2}, {3, 4, 5}}));
   EXPECT_EQ(triangles(-1, true), (Triangles{{5, 4, 3}, {2, 1, 0}}));
-  EXPECT_EQ(triangles(5, false), (Triangles{{0, 1, 2}, {1, 3, 2}, {2, 3, 4}, {3, 5, 4}}));
-  EXPECT_EQ(triangles(5, true), (Triangles{{5, 4, 3}, {4, 2, 3}, {3, 2, 1}, {2, 0, 1}}));
+  EXPECT_EQ(triangles(5, false), (Triangles{{0, 1, 2}, {2, 1, 3}, {2, 3, 4}, {4, 3, 5}}));
+  EXPECT_EQ(triangles(5, true), (Triangles{{5, 4, 3}, {3, 4, 2}, {3, 2, 1}, {1, 2, 0}}));
   EXPECT_EQ(triangles(6, false), (Triangles{{1, 2, 0}, {2, 3, 0}, {3, 4, 0}, {4, 5, 0}}));
+}
+
+TEST_F(GltfReader, TheLargestIndexBeginsANewStripOrFan) {
+  const auto triangles = [&](int mode, const std::vector<std::uint8_t>& indices) {
+    GltfParts parts;
+    std::vector<float> xyz = kSquare;
+    xyz.insert(xyz.end(), {2, 0, 0, 2, 1, 0});
+    const int positions = parts.add_numbers(5126, "VEC3", xyz);
+    parts.add_primitive(positions, parts.add_numbers(5121, "SCALAR", indices), mode);
+    return read("a.glb", parts.glb()).mesh.triangles;
+  };
+  EXPECT_EQ(triangles(5, {0, 1, 2, 255, 1, 2, 3, 4}), (Triangles{{0, 1, 2}, {1, 2, 3}, {3, 2, 4}}));
+  EXPECT_EQ(triangles(5, {0, 1, 2, 2, 3, 3, 4, 5}), (Triangles{{0, 1, 2}, {4, 3, 5}}))
+      << "repeated corners make no triangle";
+  EXPECT_EQ(triangles(6, {0, 1, 2, 3, 255, 3, 4, 5}), (Triangles{{1, 2, 0}, {2, 3, 0}, {4, 5, 3}}));
+  GltfParts lists;
+  const int positions = lists.add_numbers(5126, "VEC3", kSquare);
+  lists.add_primitive(positions,
+                      lists.add_numbers(5121, "SCALAR", std::vector<std::uint8_t>{0, 1, 255}));
+  expect_parts(error("a.glb", lists.glb()), {"vertex 255 of 4"});
+}
+
+TEST_F(GltfReader, ReadsNormals) {
+  const auto normals = [&](const std::string& node, const std::vector<float>& given) {
+    GltfParts parts;
+    const int positions = parts.add_numbers(5126, "VEC3", kSquare);
+    const int accessor = parts.add_numbers(5126, "VEC3", given);
+    parts.add_primitive(positions, -1, 6);
+    parts.primitives.insert(parts.primitives.find('{', 1) + 1,
+                            R"("NORMAL":)" + std::to_string(accessor) + ",");
+    parts.nodes = R"({"mesh":0)" + node + "}";
+    return read("a.glb", parts.glb()).mesh.normals;
+  };
+  const std::vector<float> up = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 3, 4};
+  const auto plain = normals("", up);
+  ASSERT_EQ(plain.size(), 4u);
+  EXPECT_EQ(plain[0], Eigen::Vector3f(0, 0, 1));
+  EXPECT_TRUE(plain[3].isApprox(Eigen::Vector3f(0, .6F, .8F)));
+  EXPECT_EQ(normals(R"(,"scale":[1,1,-2])", up)[0], Eigen::Vector3f(0, 0, -1)) << "mirrored";
+  EXPECT_TRUE(
+      normals(R"(,"scale":[1,2,1])", up)[3].isApprox(Eigen::Vector3f(0, 1.5F, 4).normalized()))
+      << "they stay perpendicular to what is stretched";
+  EXPECT_EQ(normals("", {0, 0, 1})[1], Eigen::Vector3f::Zero()) << "there is one only";
+  EXPECT_TRUE(normals(R"(,"scale":[1,1,0])", up).empty()) << "nothing is left of their direction";
+}
+
+TEST_F(GltfReader, DamagedNormalsCountAsNone) {
+  const Scan scan = read("a.gltf", changed(R"("POSITION":0)", R"("POSITION":0,"NORMAL":7)"));
+  EXPECT_EQ(scan.mesh.triangles, kTwo);
+  EXPECT_TRUE(scan.mesh.normals.empty());
 }
 
 TEST_F(GltfReader, PassesOverPointsAndLines) {

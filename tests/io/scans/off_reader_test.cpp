@@ -58,6 +58,34 @@ TEST_F(OffReader, ReadsBinary) {
   }
 }
 
+TEST_F(OffReader, ReadsNormals) {
+  const auto normals = [&](const std::string& keyword, const std::string& vertices) {
+    return read("a.off", keyword + "\n3 1 0\n" + vertices + "3 0 1 2\n").mesh.normals;
+  };
+  using Eigen::Vector3f;
+  for (const auto& found :
+       {normals("NOFF", "0 0 0 0 0 2\n1 0 0 0 0 1\n0 1 0 0 1 0\n"),
+        normals("NOFF", "0 0 0\n0 0 2\n1 0 0\n0 0 1\n0 1 0\n0 1\n0\n"),
+        normals("CNOFF", "0 0 0 0 0 1 255 0 0\n1 0 0 0 0 1 255 0 0\n0 1 0 0 1 0 0 0 0\n")}) {
+    ASSERT_EQ(found.size(), 3u);
+    EXPECT_EQ(found[0].normalized(), Vector3f(0, 0, 1));
+    EXPECT_EQ(found[2], Vector3f(0, 1, 0));
+  }
+  EXPECT_TRUE(normals("CNOFF", "0 0 0 255 0 0 0 0 1\n1 0 0 9 0 0\n0 1 0\n").empty())
+      << "the colours stand first";
+  EXPECT_TRUE(normals("OFF", "0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n").empty());
+  EXPECT_EQ(read("a.off", binary("NOFF", 3)).mesh.normals.at(3), Vector3f(9, 9, 9));
+  EXPECT_TRUE(read("a.off", binary("COFF", 4)).mesh.normals.empty());
+}
+
+TEST_F(OffReader, DividesHomogeneousCoordinates) {
+  EXPECT_EQ(point(read("a.off", "4OFF\n3 1 0\n0 0 0 1\n2 0 0 2\n0 8 2 4\n3 0 1 2\n"), 2),
+            Eigen::Vector3d(0, 2, 0.5));
+  EXPECT_EQ(point(read("a.off", binary("4OFF", 1)), 3), Eigen::Vector3d(3, 9, 0.5) / 9);
+  expect_parts(error("a.off", "4OFF\n3 1 0\n0 0 0 1\n2 0 0 0\n0 8 2 4\n3 0 1 2\n"),
+               {"line 4", "x coordinate is not a finite number"});
+}
+
 TEST_F(OffReader, RefusesCutBinaryFiles) {
   const std::string whole = binary("OFF", 0);
   for (std::size_t size = 12; size < whole.size(); ++size)
@@ -70,7 +98,7 @@ TEST_F(OffReader, RefusesCutBinaryFiles) {
 }
 
 TEST_F(OffReader, RefusesOtherDimensionsAndOtherFiles) {
-  for (const std::string keyword : {"4OFF", "nOFF", "C4OFF", "4nOFF"})
+  for (const std::string keyword : {"nOFF", "CnOFF", "4nOFF"})
     expect_parts(error("a.off", keyword + "\n3 1 0\n"), {"line 1", "three dimensions"});
   expect_parts(error("a.off", "ply\n"), {"the file is a PLY file"});
   expect_parts(error("a.off", "SOFF\n"), {"line 1", "not an OFF file"});

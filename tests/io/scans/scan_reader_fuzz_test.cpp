@@ -165,6 +165,8 @@ GltfParts gltf_parts() {
   const int strip = parts.add_numbers(5120, "VEC3", quantised, R"(,"normalized":true)" + sparse);
   parts.add_primitive(strip, -1, 5);
   parts.add_primitive(0, -1, 0);
+  const std::size_t attributes = parts.primitives.find(R"("POSITION":)" + std::to_string(strip));
+  parts.primitives.insert(attributes, R"("NORMAL":)" + std::to_string(strip) + ",");
   parts.nodes = R"({"children":[1,2],"rotation":[0,0,1,0]},{"mesh":0,"translation":[1,2,3]},)"
                 R"({"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,-1,0,5,6,7,1]})";
   return parts;
@@ -177,7 +179,9 @@ Seed vtk(bool binary) {
   file.line("LINES 1 3").numbers(std::vector<int>{2, 0, 1});
   file.line("TRIANGLE_STRIPS 1 5").numbers(std::vector<int>{4, 0, 1, 3, 2});
   file.line("POLYGONS 2 9").numbers(std::vector<int>{3, 0, 1, 2, 4, 0, 1, 2, 3});
-  return {binary ? "binary.vtk" : "ascii.vtk", file.line("POINT_DATA 4").text};
+  file.line("POINT_DATA 4").line("SCALARS s short").line("LOOKUP_TABLE t");
+  file.numbers(std::vector<std::int16_t>(4, 1)).line("NORMALS n float");
+  return {binary ? "binary.vtk" : "ascii.vtk", file.numbers(std::vector<float>(12, 1)).text};
 }
 
 Seed vtk_grid(bool binary) {

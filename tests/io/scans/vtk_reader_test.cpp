@@ -122,6 +122,49 @@ TEST_F(VtkReader, PassesOverFields) {
   expect_parts(error("a.vtk", file.text), {"type of numbers 'string'"});
 }
 
+TEST_F(VtkReader, ReadsNormalsBehindOtherData) {
+  for (const bool binary : {false, true}) {
+    VtkText file = points(binary);
+    file.line("POLYGONS 1 5").numbers(std::vector<int>{4, 0, 1, 2, 3});
+    file.line("CELL_DATA 1").line("NORMALS of_cells float").numbers(std::vector<float>{7, 7, 7});
+    file.line("POINT_DATA 4").line("SCALARS a short 2").line("LOOKUP_TABLE t");
+    file.numbers(std::vector<std::int16_t>(8, 5)).line("LOOKUP_TABLE t 2");
+    file.numbers(std::vector<std::uint8_t>(8, 9)).line("SCALARS b double").line("LOOKUP_TABLE t");
+    file.numbers(std::vector<double>(4, 1)).line("COLOR_SCALARS c 3");
+    file.numbers(std::vector<std::uint8_t>(12, 9)).line("VECTORS v double");
+    file.numbers(std::vector<double>(12, 2)).line("TENSORS t float");
+    file.numbers(std::vector<float>(36, 2)).line("TEXTURE_COORDINATES uv 2 float");
+    file.numbers(std::vector<float>(8, 2)).line("GLOBAL_IDS ids vtkIdType");
+    file.numbers(std::vector<std::int32_t>(4, 2)).line("FIELD f 1").line("x 1 4 float");
+    file.numbers(std::vector<float>(4, 2)).line("METADATA").line("INFORMATION 0").line("");
+    file.line("NORMALS n double").numbers(std::vector<double>{0, 0, 1, 0, 0, 2, 0, 3, 0, 0, 0, 1});
+    const Scan scan = read("a.vtk", file.text);
+    ASSERT_EQ(scan.mesh.normals.size(), 4u) << binary;
+    EXPECT_EQ(scan.mesh.normals[1], Eigen::Vector3f(0, 0, 2));
+    EXPECT_EQ(scan.mesh.normals[2], Eigen::Vector3f(0, 3, 0));
+    EXPECT_EQ(scan.bytes_after_end, 0);
+  }
+}
+
+TEST_F(VtkReader, BehindDataThatCannotBeReadThereAreNoNormals) {
+  const std::vector<std::string> starts = {
+      "POINT_DATA 4\nHYPER h float\n",
+      "POINT_DATA 4\nSCALARS a bit\nLOOKUP_TABLE t\n",
+      "POINT_DATA 4\nSCALARS a float\n",
+      "POINT_DATA x\n",
+      "POINT_DATA 4\nVECTORS v float\n1 2",
+      "POINT_DATA 1000000000000000\nCOLOR_SCALARS c 1000000000000000\n"};
+  for (const bool binary : {false, true})
+    for (const std::string& start : starts) {
+      VtkText file = points(binary);
+      file.line("POLYGONS 1 5").numbers(std::vector<int>{4, 0, 1, 2, 3}).text += start;
+      file.line("NORMALS n float").numbers(std::vector<float>(12, 1));
+      const Scan scan = read("a.vtk", file.text);
+      EXPECT_EQ(scan.mesh.triangles.size(), 2u) << start;
+      EXPECT_TRUE(scan.mesh.normals.empty()) << start;
+    }
+}
+
 TEST_F(VtkReader, RefusesOtherFiles) {
   expect_parts(error("a.vtk", "hello\n"), {"line 1", "# vtk DataFile Version"});
   expect_parts(error("a.vtk", "# vtk DataFile Version 2.0\n\nTEXT\n"),

@@ -70,6 +70,37 @@ TEST_F(VtpReader, ReadsEveryTypeOfNumbers) {
             Vector3d(-5e9, 2, 3));
 }
 
+TEST_F(VtpReader, ReadsNormals) {
+  const auto normals = [&](const std::string& data, const std::string& name, int components) {
+    VtpWriter writer{.format = "binary", .compressed = true};
+    const std::string piece = writer.piece();
+    std::vector<float> values = {0, 0, 1, 0, 0, 2, 0, 3, 0, 0, 0, 1};
+    return read("a.vtp",
+                writer.file(piece +
+                            changed(piece, "<Points>",
+                                    data + writer.array(name, "Float32", values, components) +
+                                        "</PointData><Points>")))
+        .mesh.normals;
+  };
+  const auto found = normals("<PointData Normals=\"mine\">", "mine", 3);
+  ASSERT_EQ(found.size(), 8u);
+  EXPECT_EQ(found[1], Eigen::Vector3f::Zero()) << "the first piece has none";
+  EXPECT_EQ(found[5], Eigen::Vector3f(0, 0, 2));
+  EXPECT_EQ(normals("<PointData>", "Normals", 3).size(), 8u);
+  EXPECT_TRUE(normals("<PointData>", "others", 3).empty());
+  EXPECT_TRUE(normals("<PointData>", "Normals", 4).empty());
+}
+
+TEST_F(VtpReader, DamagedNormalsCountAsNone) {
+  const Scan scan =
+      read("a.vtp", changed(ascii_file(), "<Points>",
+                            "<PointData><DataArray type=\"Float32\" Name=\"Normals\" "
+                            "NumberOfComponents=\"3\" format=\"ascii\">1 2</DataArray>"
+                            "</PointData><Points>"));
+  EXPECT_EQ(scan.mesh.triangles, kThree);
+  EXPECT_TRUE(scan.mesh.normals.empty());
+}
+
 TEST_F(VtpReader, ReadsAllPieces) {
   VtpWriter writer{.format = "appended"};
   const std::string pieces = writer.piece() + writer.piece();
