@@ -1,6 +1,7 @@
 #include "jobs/stages/level_features.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <numeric>
@@ -83,12 +84,14 @@ class Finder {
                                  : fields.mean_edge_length),
         radius_(options.radius * fields.scale / surface.unit()),
         row_(fields.stored_order->size()) {
-    const auto completeness = static_cast<float>(options.min_completeness);
     const double scale = fields.scale;
-    gaussian_ = {fields.gaussian_curvature, fields.patch_completeness, completeness,
-                 static_cast<float>(kFlatGaussian / (scale * scale))};
-    mean_ = {fields.mean_curvature, fields.patch_completeness, completeness,
-             static_cast<float>(kFlatMean / scale)};
+    const std::array flat = {kFlatGaussian / (scale * scale), kFlatMean / scale};
+    workers_.for_blocks(2, 1, [&](IndexRange range) {
+      const auto kind = static_cast<int>(range.begin);
+      heights_[kind] = kernels::heights_of(values(kind), fields.patch_completeness,
+                                           static_cast<float>(options.min_completeness),
+                                           static_cast<float>(flat[kind]));
+    });
     const std::vector<std::int32_t>& order = *fields.stored_order;
     workers_.for_blocks(static_cast<std::int64_t>(order.size()), kVertexBlock,
                         [&](IndexRange range) {
@@ -99,30 +102,44 @@ class Finder {
 
   kernels::LevelFeatures find() {
     kernels::LevelFeatures result;
+    std::array<std::vector<std::int32_t>, 2> ascents = steepest_ascents();
     // Parts of each search are serial, so all four run at once.
     workers_.for_blocks(4, 1, [&](IndexRange range) {
       const auto kind = static_cast<int>(range.begin % kernels::kContourKinds);
-      const CurvatureField& field = kind == 0 ? gaussian_ : mean_;
       if (range.begin < 2)
-        result.of_kind[kind] = maxima(field);
+        result.of_kind[kind] = maxima(kind, std::move(ascents[kind]));
       else
-        contours(field, result.contours[kind], result.of_kind[kernels::torsion_of(kind)]);
+        contours(field(kind), result.contours[kind], result.of_kind[kernels::torsion_of(kind)]);
     });
     return result;
   }
 
  private:
-  std::vector<Feature> maxima(const CurvatureField& field) const {
+  const std::vector<float>& values(int kind) const {
+    return kind == 0 ? fields_.gaussian_curvature : fields_.mean_curvature;
+  }
+  CurvatureField field(int kind) const { return {heights_[kind]}; }
+
+  /// Returns for K and for H the steepest ascent from each vertex; see `kernels::uphill`.
+  std::array<std::vector<std::int32_t>, 2> steepest_ascents() const {
     const auto n = static_cast<std::int64_t>(row_.size());
-    std::vector<std::int32_t> uphill(n);
-    std::vector<std::int32_t> peaks = collect<std::int32_t>(
-        workers_, n, kVertexBlock, [&](IndexRange range, std::vector<std::int32_t>& found) {
-          for (auto i = range.begin; i < range.end; ++i) {
-            const auto v = static_cast<std::int32_t>(i);
-            uphill[v] = kernels::uphill(surface_, field, v);
-            if (uphill[v] == v) found.push_back(v);
-          }
-        });
+    const std::array fields = {field(0), field(1)};
+    std::array<std::vector<std::int32_t>, 2> ascents;
+    for (auto& ascent : ascents) ascent.resize(n);
+    workers_.for_blocks(n, kVertexBlock, [&](IndexRange range) {
+      for (auto v = range.begin; v < range.end; ++v) {
+        const auto next = kernels::uphill(surface_, fields, static_cast<std::int32_t>(v));
+        for (std::size_t kind = 0; kind < next.size(); ++kind) ascents[kind][v] = next[kind];
+      }
+    });
+    return ascents;
+  }
+
+  std::vector<Feature> maxima(int kind, std::vector<std::int32_t> uphill) const {
+    const CurvatureField field = this->field(kind);
+    std::vector<std::int32_t> peaks;
+    for (std::size_t v = 0; v < uphill.size(); ++v)
+      if (uphill[v] == static_cast<std::int32_t>(v)) peaks.push_back(uphill[v]);
     if (peaks.empty()) return {};
     const std::vector<float> prominences =
         kernels::prominences(surface_, field, kernels::peaks_of(std::move(uphill)));
@@ -133,13 +150,13 @@ class Finder {
     features.reserve(peaks.size());
     for (const std::int32_t v : peaks) {
       Feature feature = feature_at([v](const auto& values) { return values[v]; });
-      const kernels::Summit summit = coarse_
-                                         ? kernels::fitted_summit(surface_, mesh_.points, field, v)
-                                         : kernels::summit(surface_, mesh_.points, field, v);
+      const kernels::Summit summit =
+          coarse_ ? kernels::fitted_summit(surface_, mesh_.points, field, values(kind), v)
+                  : kernels::summit(surface_, mesh_.points, field, v);
       feature.position = summit.of(fields_.points);
       feature.initial_position = summit.of(mesh_.initial_points);
       feature.vertex = row_[v];
-      feature.value = field.values[v];
+      feature.value = values(kind)[v];
       feature.prominence = prominences[v];
       features.push_back(feature);
     }
@@ -276,12 +293,11 @@ class Finder {
   const LevelFields& fields_;
   engine::Workers& workers_;
   bool curved_;
-  bool coarse_;                    ///< The mesh was coarsened.
-  double contour_spacing_;         ///< Distance of the samples along contours.
-  double radius_;                  ///< In internal units.
-  std::vector<std::int32_t> row_;  ///< Row of each vertex.
-  CurvatureField gaussian_;
-  CurvatureField mean_;
+  bool coarse_;                                ///< The mesh was coarsened.
+  double contour_spacing_;                     ///< Distance of the samples along contours.
+  double radius_;                              ///< In internal units.
+  std::vector<std::int32_t> row_;              ///< Row of each vertex.
+  std::array<std::vector<float>, 2> heights_;  ///< Of K and of H; see `kernels::heights_of`.
 };
 
 }  // namespace

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 
-#include "kernels/surface/circulators.hpp"
 #include "kernels/surface/nearest_surface.hpp"
 #include "kernels/surface/radix_sort.hpp"
 
@@ -24,13 +24,13 @@ bool outdone_two_edges_away(const Connectivity& surface, std::span<const Eigen::
   const auto length = [&](std::int32_t a, std::int32_t b) {
     return (points[b] - points[a]).cast<double>().norm();
   };
-  for (const std::int32_t u : neighbours(surface, v)) {
-    const double rest = radius - length(v, u);
-    if (!(rest > 0)) continue;
+  for (const std::int32_t u : neighbours(surface, v))
     for (const std::int32_t w : neighbours(surface, u))
-      if (w != v && field.comparable(v, w) && field.higher(w, v) && length(u, w) <= rest)
-        return true;
-  }
+      if (field.outdoes(w, v)) {  // which is rarer than a short path
+        const double rest = radius - length(v, u);
+        if (!(rest > 0)) break;
+        if (length(u, w) <= rest) return true;
+      }
   return false;
 }
 
@@ -163,31 +163,32 @@ class Quadratic {
 
 }  // namespace
 
-std::int32_t uphill(const Connectivity& surface, const CurvatureField& field, std::int32_t v) {
-  if (!field.comparable(v, v)) return kNone;
-  std::int32_t best = v;
-  for (const std::int32_t w : neighbours(surface, v))
-    if (field.comparable(v, w) && field.higher(w, best)) best = w;
-  return best;
+std::vector<float> heights_of(std::span<const float> values, std::span<const float> completeness,
+                              float min_completeness, float flat) {
+  std::vector<float> heights(values.size());
+  for (std::size_t v = 0; v < values.size(); ++v)
+    heights[v] = !(completeness[v] >= min_completeness) ? std::numeric_limits<float>::quiet_NaN()
+                 : std::abs(values[v]) > flat           ? values[v]
+                                                        : 0.0f;
+  return heights;
 }
 
 bool is_maximum(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
                 const CurvatureField& field, std::int32_t v, double radius, GeodesicBall& ball) {
-  if (uphill(surface, field, v) != v) return false;
+  if (!field.comparable(v, v)) return false;
+  for (const std::int32_t w : neighbours(surface, v))
+    if (field.outdoes(w, v)) return false;
   if (!(radius > 0)) return true;
   if (outdone_two_edges_away(surface, points, field, v, radius)) return false;
   bool highest = true;
-  const auto outdoes = [&](std::int32_t w) {
-    return w != v && field.comparable(v, w) && field.higher(w, v);
-  };
   ball.surround(surface, points, v, radius, [&](std::int32_t w) {
-    highest = !outdoes(w);
+    highest = !field.outdoes(w, v);
     return highest;
   });
   if (highest) return true;
   highest = true;  // unless it is outdone along the surface as well
   ball.grow(surface, points, v, radius, [&](std::int32_t w, double) {
-    highest = !outdoes(w);
+    highest = !field.outdoes(w, v);
     return highest;
   });
   return highest;
@@ -211,13 +212,13 @@ Summit summit(const Connectivity& surface, std::span<const Eigen::Vector4f> poin
 }
 
 Summit fitted_summit(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
-                     const CurvatureField& field, std::int32_t v) {
+                     const CurvatureField& field, std::span<const float> values, std::int32_t v) {
   const TangentPlane plane = tangent_plane(surface, points, v);
-  const float sign = field.values[v] > 0 ? 1.0f : -1.0f;
+  const float sign = values[v] > 0 ? 1.0f : -1.0f;
   Quadratic fit;
   for (const std::int32_t w : two_rings(surface, v))
     if (field.takes_part(w))
-      fit.add(plane.coordinates(point_of(points, w)), static_cast<double>(sign * field.values[w]));
+      fit.add(plane.coordinates(point_of(points, w)), static_cast<double>(sign * values[w]));
   const std::optional<Eigen::Vector2d> place = fit.maximum();
   if (!place || !(plane.unit > 0)) return summit(surface, points, field, v);
   return nearest_on_ring(surface, points, v, plane.point(*place));

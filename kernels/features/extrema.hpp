@@ -7,35 +7,54 @@
 #include <span>
 #include <vector>
 
+#include "kernels/surface/circulators.hpp"
 #include "kernels/surface/connectivity.hpp"
 #include "kernels/surface/geodesic_ball.hpp"
 
 namespace semigeo::kernels {
 
-/// Holds K or H on the vertices of a level.
+/// Holds what maxima and contours are searched on: K or H on the vertices of a level, as
+/// `heights_of` prepares them.
 struct CurvatureField {
-  std::span<const float> values;        ///< (N) K or H.
-  std::span<const float> completeness;  ///< (N) Completeness of the patches.
-  float min_completeness = 0.6f;        ///< Vertices with less take no part.
-  float flat = 0;                       ///< Magnitudes up to this count as zero.
+  std::span<const float> heights;  ///< (N) 0 where the surface is flat, NaN where none takes part.
 
-  bool takes_part(std::int32_t v) const { return completeness[v] >= min_completeness; }
-  float magnitude(std::int32_t v) const { return std::abs(values[v]); }
+  bool takes_part(std::int32_t v) const { return !std::isnan(heights[v]); }
+  float magnitude(std::int32_t v) const { return std::abs(heights[v]); }
   /// Tells whether both vertices take part, neither is zero, and they have the same sign.
   bool comparable(std::int32_t v, std::int32_t w) const {
-    return takes_part(v) && takes_part(w) && magnitude(v) > flat && magnitude(w) > flat &&
-           (values[v] > 0) == (values[w] > 0);
+    return (heights[v] > 0 && heights[w] > 0) || (heights[v] < 0 && heights[w] < 0);
   }
   /// Tells whether v is higher than w. The order is strict: where magnitudes are equal, the vertex
   /// with the lower number is the higher one.
   bool higher(std::int32_t v, std::int32_t w) const {
     return magnitude(v) != magnitude(w) ? magnitude(v) > magnitude(w) : v < w;
   }
+  /// Tells whether v is comparable with w and higher.
+  bool outdoes(std::int32_t v, std::int32_t w) const { return comparable(v, w) && higher(v, w); }
 };
 
-/// Returns the highest of v and its comparable neighbours: the next step of the steepest ascent in
-/// |value|. It is v itself at a peak, and kNone if v takes no part or is zero.
-std::int32_t uphill(const Connectivity& surface, const CurvatureField& field, std::int32_t v);
+/// Returns the heights (N) of vertices with these values of K or H (N), whose patches have this
+/// completeness (N). Vertices with less than `min_completeness` take no part; magnitudes up to
+/// `flat` count as zero.
+std::vector<float> heights_of(std::span<const float> values, std::span<const float> completeness,
+                              float min_completeness, float flat);
+
+/// Returns, for each of the fields, the highest of v and its comparable neighbours: the next step
+/// of the steepest ascent in |value|. It is v itself at a peak, and kNone if v takes no part or is
+/// zero.
+template <std::size_t Fields>
+std::array<std::int32_t, Fields> uphill(const Connectivity& surface,
+                                        const std::array<CurvatureField, Fields>& fields,
+                                        std::int32_t v) {
+  std::array<std::int32_t, Fields> best;
+  best.fill(v);
+  for (const std::int32_t w : neighbours(surface, v))
+    for (std::size_t i = 0; i < Fields; ++i)
+      if (fields[i].outdoes(w, best[i])) best[i] = w;
+  for (std::size_t i = 0; i < Fields; ++i)
+    if (!fields[i].comparable(v, v)) best[i] = kNone;
+  return best;
+}
 
 /// Tells whether v is a peak and no comparable vertex within `radius` (units of the points) is
 /// higher. The neighbours always count; radius 0 is the rule of the thesis. Source: thesis 5.6.1.
@@ -68,9 +87,9 @@ Summit summit(const Connectivity& surface, std::span<const Eigen::Vector4f> poin
 /// Returns where on the faces round the peak v a quadratic polynomial has its maximum that is
 /// fitted to the field on the neighbours of v and on theirs. It is for meshes whose edges are
 /// nearly as long as features are wide: there it is nearer to the maximum than `summit`, whose
-/// result it is if the fit has no maximum.
+/// result it is if the fit has no maximum. `values` (N) are K or H, also where they count as zero.
 Summit fitted_summit(const Connectivity& surface, std::span<const Eigen::Vector4f> points,
-                     const CurvatureField& field, std::int32_t v);
+                     const CurvatureField& field, std::span<const float> values, std::int32_t v);
 
 /// Returns for each vertex (N) the peak at which its steepest ascent ends, or kNone. `uphill` holds
 /// the results of that function for all vertices (N). The cost is linear.

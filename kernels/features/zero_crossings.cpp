@@ -1,17 +1,13 @@
 #include "kernels/features/zero_crossings.hpp"
 
-#include <algorithm>
-#include <array>
+#include <utility>
+#include <vector>
 
 namespace semigeo::kernels {
 namespace {
 
-float value_at(const CurvatureField& field, std::int32_t v) {
-  return field.magnitude(v) > field.flat ? field.values[v] : 0.0f;
-}
-
 bool positive(const CurvatureField& field, std::int32_t v) {
-  return value_at(field, v) >= 0;
+  return field.heights[v] >= 0;
 }
 
 bool crossed(const Connectivity& surface, const CurvatureField& field, std::int32_t f) {
@@ -43,36 +39,38 @@ class Tracer {
  public:
   Tracer(const Connectivity& surface, const CurvatureField& field,
          std::span<const std::int32_t> faces)
-      : surface_(surface), field_(field), faces_(faces), traced_(faces.size(), false) {
+      : surface_(surface),
+        field_(field),
+        faces_(faces),
+        crossed_(surface.face_count(), false),
+        traced_(surface.face_count(), false) {
     contours_.offsets.push_back(0);
+    for (const std::int32_t f : faces) crossed_[f] = true;
   }
 
   Contours trace() {
     for (const bool open : {true, false})
-      for (std::size_t k = 0; k < faces_.size(); ++k) {
-        if (traced_[k]) continue;
-        const std::int32_t entry = passage(surface_, field_, faces_[k]).entry;
-        if (!open || beyond(entry) == kNone) follow(entry);
+      for (const std::int32_t f : faces_) {
+        if (traced_[f]) continue;
+        const std::int32_t entry = passage(surface_, field_, f).entry;
+        if (!open || !leads_on(entry)) follow(entry);
       }
     return std::move(contours_);
   }
 
  private:
-  /// Returns the place of the face across h among the faces, or kNone.
-  std::int32_t beyond(std::int32_t h) const {
+  /// Tells whether the face across h is one of the faces.
+  bool leads_on(std::int32_t h) const {
     const std::int32_t t = surface_.twin[h];
-    if (t == kNone) return kNone;
-    const auto at = std::ranges::lower_bound(faces_, face_of(t));
-    if (at == faces_.end() || *at != face_of(t)) return kNone;
-    return static_cast<std::int32_t>(at - faces_.begin());
+    return t != kNone && crossed_[face_of(t)];
   }
 
   void add(std::int32_t h) {
     std::int32_t p = surface_.origin(h);
     std::int32_t n = surface_.target(h);
     if (!positive(field_, p)) std::swap(p, n);
-    const float a = value_at(field_, p);
-    const EdgePoint point{p, n, a / (a - field_.values[n])};
+    const float a = field_.heights[p];
+    const EdgePoint point{p, n, a / (a - field_.heights[n])};
     if (static_cast<std::int32_t>(contours_.points.size()) > contours_.offsets.back() &&
         same(contours_.points.back(), point))
       return;
@@ -90,9 +88,9 @@ class Tracer {
     add(entry);
     while (true) {
       const std::int32_t f = face_of(entry);
-      traced_[std::ranges::lower_bound(faces_, f) - faces_.begin()] = true;
+      traced_[f] = true;
       const std::int32_t exit = passage(surface_, field_, f).exit;
-      if (beyond(exit) == kNone) {
+      if (!leads_on(exit)) {
         add(exit);
         break;
       }
@@ -119,7 +117,8 @@ class Tracer {
   const Connectivity& surface_;
   const CurvatureField& field_;
   std::span<const std::int32_t> faces_;
-  std::vector<bool> traced_;
+  std::vector<bool> crossed_;  ///< Whether a face is one of the faces.
+  std::vector<bool> traced_;   ///< Whether a contour was traced through a face.
   Contours contours_;
 };
 

@@ -32,7 +32,7 @@ struct Contours {
 };
 
 /// Appends those faces of [begin, end) through which a contour runs: all corners take part in the
-/// field, and their signs differ. Magnitudes up to `field.flat` are zero and count as positive, so
+/// field, and their signs differ. Heights of zero count as positive, so
 /// that a contour runs through a vertex that is exactly zero, and flat regions have none.
 void find_crossing_faces(const Connectivity& surface, const CurvatureField& field,
                          std::int32_t begin, std::int32_t end, std::vector<std::int32_t>& faces);

@@ -21,7 +21,10 @@ class Sheet {
     completeness.assign(values_.size(), 1.0f);
   }
 
-  CurvatureField field() const { return {values_, completeness}; }
+  CurvatureField field() const {
+    heights_ = heights_of(values_, completeness, 0.6f, 0);
+    return {heights_};
+  }
   Eigen::Vector2f at(std::int32_t v) const { return prepared_.points[v].head<2>(); }
   std::int32_t nearest(double x, double y) const {
     std::int32_t best = 0;
@@ -43,13 +46,14 @@ class Sheet {
     return point.of(prepared_.points).head<2>();
   }
   Eigen::Vector2f fitted_summit(std::int32_t v) const {
-    const Summit point = kernels::fitted_summit(prepared_.surface, prepared_.points, field(), v);
+    const Summit point =
+        kernels::fitted_summit(prepared_.surface, prepared_.points, field(), values_, v);
     return point.of(prepared_.points).head<2>();
   }
   std::vector<float> prominences() const {
     std::vector<std::int32_t> steps;
     for (std::int32_t v = 0; v < prepared_.surface.vertex_count(); ++v)
-      steps.push_back(uphill(prepared_.surface, field(), v));
+      steps.push_back(uphill(prepared_.surface, std::array{field()}, v)[0]);
     return kernels::prominences(prepared_.surface, field(), peaks_of(std::move(steps)));
   }
 
@@ -58,6 +62,7 @@ class Sheet {
  private:
   PreparedSurface prepared_;
   std::vector<float> values_;
+  mutable std::vector<float> heights_;
 };
 
 double hill(double x, double y, double height, double width) {

@@ -31,7 +31,8 @@ struct Traced {
       values.push_back(static_cast<float>(value(q)));
       completeness.push_back(invalid(q) ? 0.0f : 1.0f);
     }
-    const CurvatureField field{values, completeness};
+    const std::vector<float> heights = heights_of(values, completeness, 0.6f, 0);
+    const CurvatureField field{heights};
     std::vector<std::int32_t> faces;
     find_crossing_faces(prepared.surface, field, 0,
                         static_cast<std::int32_t>(prepared.surface.face_count()), faces);
