@@ -24,6 +24,7 @@ void add_info(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_prune(CLI::App& app, int& exit_code);
 void add_report(CLI::App& app, int& exit_code);
+void add_picture(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
 void add_bench(CLI::App& app, int& exit_code);
 

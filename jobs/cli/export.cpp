@@ -8,6 +8,7 @@
 #include "io/files/lower_case.hpp"
 #include "io/scans/feature_writer.hpp"
 #include "io/scans/mesh_writer.hpp"
+#include "jobs/cli/chosen_level.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/output.hpp"
 
@@ -39,14 +40,6 @@ OutputFormat format_of(const ExportOptions& options) {
   throw CLI::ValidationError("--output", options.output + " does not say how to write it: " +
                                              (surface ? "give a name that ends in .ply"
                                                       : "give a name that ends in .ply or .csv"));
-}
-
-void require_level(const io::Dataset& dataset, int level) {
-  if (level >= dataset.level_count())
-    throw io::Error(
-        dataset.path(), "level " + std::to_string(level),
-        "does not exist; there are " + std::to_string(dataset.level_count()) + " levels",
-        "give --level 0 to " + std::to_string(dataset.level_count() - 1));
 }
 
 void export_features(const io::Dataset& dataset, const ExportOptions& options,

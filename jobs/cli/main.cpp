@@ -92,6 +92,7 @@ int run(int argc, char** argv) {
   add_check(app, exit_code);
   add_prune(app, exit_code);
   add_report(app, exit_code);
+  add_picture(app, exit_code);
   add_export(app, exit_code);
   add_bench(app, exit_code);
   add_job(app, exit_code);

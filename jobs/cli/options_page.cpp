@@ -100,7 +100,7 @@ void print_table(const CLI::App& command, const Keys& keys) {
 /// Prints a section for a command, with its options that are in no table.
 void print_command(const CLI::App& command, const std::string& name, const Keys& surface,
                    const Keys& execution) {
-  const bool makes_datasets = command.get_option_no_throw("--levels") != nullptr;
+  const bool makes_datasets = command.get_option_no_throw("--fill-holes") != nullptr;
   const bool runs_jobs = command.get_option_no_throw("--executor") != nullptr;
   std::printf("\n## semigeo %s\n", name.c_str());
   if (makes_datasets) std::printf("The options [of datasets](#datasets), [of jobs](#jobs), and:\n");

@@ -34,6 +34,24 @@ Vector3f towards_viewer(View view) {
   return {0, 0, 1};
 }
 
+/// Corners of a box in the directions of a camera. Without points, `low` is above `high`.
+struct Box {
+  Vector3f low = Vector3f::Constant(std::numeric_limits<float>::max());
+  Vector3f high = -low;
+};
+
+Box box_of(const Matrix3f& axes, std::span<const std::span<const float>> surfaces) {
+  Box box;
+  for (const std::span<const float> points : surfaces)
+    for (std::size_t i = 0; i + 2 < points.size(); i += 3) {
+      const Vector3f point = axes * Vector3f(points[i], points[i + 1], points[i + 2]);
+      if (!point.allFinite()) continue;
+      box.low = box.low.cwiseMin(point);
+      box.high = box.high.cwiseMax(point);
+    }
+  return box;
+}
+
 }  // namespace
 
 Matrix3f axes_of(View view, UpAxis up) {
@@ -52,22 +70,20 @@ Matrix3f axes_of(View view, UpAxis up) {
   return axes * standing;
 }
 
+float aspect_of(const Matrix3f& axes, std::span<const std::span<const float>> surfaces) {
+  const Box box = box_of(axes, surfaces);
+  const Vector3f size = box.high - box.low;
+  return size.x() > 0 && size.y() > 0 ? size.x() / size.y() : 1.0f;
+}
+
 Camera fitted_camera(const Matrix3f& axes, std::span<const std::span<const float>> surfaces,
                      int width, int height) {
-  Vector3f low = Vector3f::Constant(std::numeric_limits<float>::max());
-  Vector3f high = -low;
-  for (const std::span<const float> points : surfaces)
-    for (std::size_t i = 0; i + 2 < points.size(); i += 3) {
-      const Vector3f point = axes * Vector3f(points[i], points[i + 1], points[i + 2]);
-      if (!point.allFinite()) continue;
-      low = low.cwiseMin(point);
-      high = high.cwiseMax(point);
-    }
+  const Box box = box_of(axes, surfaces);
   Camera camera;
   camera.axes = axes;
-  if (low.x() > high.x()) return camera;  // there is no point
-  camera.centre = axes.transpose() * (0.5f * (low + high));
-  const Vector3f size = high - low;
+  if (box.low.x() > box.high.x()) return camera;  // there is no point
+  camera.centre = axes.transpose() * (0.5f * (box.low + box.high));
+  const Vector3f size = box.high - box.low;
   if (!(size.norm() > 0)) return camera;  // one point, as large as the length unit
   const float smallest = 1e-6f * size.norm();
   camera.pixels_per_length =

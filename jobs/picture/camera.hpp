@@ -37,6 +37,10 @@ struct Camera {
 /// the x axis to the right; the iso view looks from the front, the right and above.
 Eigen::Matrix3f axes_of(View view, UpAxis up);
 
+/// Returns the width of the smallest upright rectangle around all points of all surfaces, as this
+/// camera's directions show it, in multiples of its height; 1 if they are not spread out.
+float aspect_of(const Eigen::Matrix3f& axes, std::span<const std::span<const float>> surfaces);
+
 /// Returns the camera that shows all points of all surfaces, each (N, 3), in a picture of this many
 /// pixels, with a margin around them. Points that are not finite are passed over.
 Camera fitted_camera(const Eigen::Matrix3f& axes, std::span<const std::span<const float>> surfaces,

@@ -70,7 +70,8 @@ Colour shaded(const Colour& colour, Vector3f normal) {
   if (inner) normal = -normal;
   const float key = std::max(0.0f, normal.dot(kKey));
   const float gloss = inner ? 0.0f : 0.1f * std::pow(std::max(0.0f, normal.dot(kGloss)), 32.0f);
-  const float light = 0.30f + 0.42f * key + 0.33f * normal.z();
+  // Bright also at the rims, so that white does not become the grey of invalid vertices.
+  const float light = 0.50f + 0.30f * key + 0.25f * normal.z();
   return scaled(colour, inner ? 0.6f * light : light, gloss);
 }
 

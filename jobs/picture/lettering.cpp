@@ -1,0 +1,92 @@
+#include "jobs/picture/lettering.hpp"
+
+#include <ft2build.h>
+
+#include <algorithm>
+#include <new>
+#include <stdexcept>
+
+#include "io/files/utf8.hpp"
+#include FT_FREETYPE_H
+
+extern "C" {
+extern const unsigned char semigeo_font_begin[];
+extern const unsigned char semigeo_font_end[];
+}
+
+namespace semigeo::jobs {
+namespace {
+
+/// Returns the number of the first character of a text, and removes it from the text.
+FT_ULong take_character(std::string_view& text) {
+  const std::size_t bytes = io::utf8_character(text);
+  const auto byte = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  FT_ULong code = bytes == 0 ? 0xfffd : byte(0);
+  if (bytes > 1) {
+    code = byte(0) & (0x7fu >> bytes);
+    for (std::size_t i = 1; i < bytes; ++i) code = code << 6 | (byte(i) & 0x3fu);
+  }
+  text.remove_prefix(std::max<std::size_t>(bytes, 1));
+  return code;
+}
+
+}  // namespace
+
+struct Lettering::Font {
+  explicit Font(int size) {
+    if (FT_Init_FreeType(&library) != 0) throw std::bad_alloc();
+    if (FT_New_Memory_Face(library, semigeo_font_begin, semigeo_font_end - semigeo_font_begin, 0,
+                           &face) != 0 ||
+        FT_Set_Pixel_Sizes(face, 0, static_cast<FT_UInt>(size)) != 0) {
+      FT_Done_FreeType(library);
+      throw std::runtime_error("the font of this program cannot be read");
+    }
+  }
+  ~Font() { FT_Done_FreeType(library); }
+  Font(const Font&) = delete;
+  Font& operator=(const Font&) = delete;
+
+  /// Loads a character with its bitmap, or returns null.
+  FT_GlyphSlot load(FT_ULong code) const {
+    return FT_Load_Char(face, code, FT_LOAD_RENDER | FT_LOAD_TARGET_LIGHT) == 0 ? face->glyph
+                                                                                : nullptr;
+  }
+
+  FT_Library library = nullptr;
+  FT_Face face = nullptr;
+};
+
+Lettering::Lettering(int size) : font_(std::make_unique<Font>(size)) {}
+Lettering::~Lettering() = default;
+
+int Lettering::width(std::string_view text) const {
+  FT_Pos width = 0;  // in 64ths of a pixel
+  while (!text.empty())
+    if (const FT_GlyphSlot glyph = font_->load(take_character(text)); glyph != nullptr)
+      width += glyph->advance.x;
+  return static_cast<int>((width + 63) / 64);
+}
+
+void Lettering::draw(io::Image& image, int x, int y, std::string_view text,
+                     const Colour& colour) const {
+  FT_Pos pen = FT_Pos{64} * x;
+  while (!text.empty()) {
+    const FT_GlyphSlot glyph = font_->load(take_character(text));
+    if (glyph == nullptr) continue;
+    const FT_Bitmap& bitmap = glyph->bitmap;
+    for (int row = 0; row < static_cast<int>(bitmap.rows); ++row)
+      for (int column = 0; column < static_cast<int>(bitmap.width); ++column) {
+        const int to_x = static_cast<int>(pen / 64) + glyph->bitmap_left + column;
+        const int to_y = y - glyph->bitmap_top + row;
+        if (to_x < 0 || to_x >= image.width || to_y < 0 || to_y >= image.height) continue;
+        const float ink = static_cast<float>(bitmap.buffer[row * bitmap.pitch + column]) / 255;
+        std::uint8_t* pixel = &image.rgba[image.at(to_x, to_y)];
+        for (std::size_t c = 0; c < colour.size(); ++c)
+          pixel[c] = static_cast<std::uint8_t>((1 - ink) * pixel[c] + ink * 255 * colour[c] + 0.5f);
+        pixel[3] = static_cast<std::uint8_t>(std::max<float>(pixel[3], 255 * ink));
+      }
+    pen += glyph->advance.x;
+  }
+}
+
+}  // namespace semigeo::jobs
