@@ -3,6 +3,15 @@
 include(GNUInstallDirs)
 
 install(TARGETS semigeo RUNTIME)
+# What man and shells look for; the program makes it when it is built.
+set(system ${PROJECT_BINARY_DIR}/system)
+install(DIRECTORY ${system}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
+install(FILES ${system}/semigeo.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+  RENAME semigeo)
+install(FILES ${system}/_semigeo DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+# Debian's zsh looks here for what comes from packages.
+install(FILES ${system}/_semigeo DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
+install(FILES ${system}/semigeo.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 install(FILES CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # Pages refer to each other and to figures by their places in the repository.
 file(GLOB_RECURSE pages CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}

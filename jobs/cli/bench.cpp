@@ -19,6 +19,7 @@
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/json_output.hpp"
 #include "jobs/cli/temporary_folder.hpp"
+#include "jobs/cli/version.hpp"
 #include "jobs/run/drain.hpp"
 #include "jobs/stages/chosen_instruction_set.hpp"
 
@@ -92,7 +93,7 @@ BenchReport new_report(const BenchOptions& options, const fs::path& folder) {
   BenchReport report;
   report.machine = describe_machine(folder);
   report.version = SEMIGEO_VERSION;
-  report.build = SEMIGEO_BUILD;
+  report.build = build_text();
   report.instruction_sets = supported_instruction_sets();
   report.instruction_set = kernels::name_of(chosen_instruction_set());
   report.date = utc_time();

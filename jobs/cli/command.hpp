@@ -4,14 +4,9 @@
 #include <cstdint>
 #include <string>
 
-namespace semigeo::jobs::cli {
+#include "jobs/cli/conventions.hpp"
 
-// The exit codes of every command.
-inline constexpr int kAllDone = 0;        ///< All jobs are done, or were up to date.
-inline constexpr int kSomeFailed = 1;     ///< Some jobs have failed.
-inline constexpr int kUsage = 2;          ///< The command line is wrong.
-inline constexpr int kLocked = 73;        ///< Another run has the archive.
-inline constexpr int kStoppedEarly = 75;  ///< The run was stopped before all jobs had ended.
+namespace semigeo::jobs::cli {
 
 // Each function adds a command and its options. When the command line names the command, it runs
 // and stores its exit code.
@@ -30,5 +25,8 @@ void add_bench(CLI::App& app, int& exit_code);
 
 /// Adds a hidden command that prints docs/options.md from the options that the other commands have.
 void add_options_page(CLI::App& app);
+/// Adds a hidden command that writes man pages and completions of shells, made from the options
+/// that the other commands have.
+void add_system_files(CLI::App& app);
 
 }  // namespace semigeo::jobs::cli

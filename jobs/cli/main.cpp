@@ -12,19 +12,11 @@
 #include "io/files/error.hpp"
 #include "io/files/small_file.hpp"
 #include "jobs/cli/command.hpp"
+#include "jobs/cli/help_formatter.hpp"
 #include "jobs/cli/output.hpp"
-#include "jobs/stages/chosen_instruction_set.hpp"
+#include "jobs/cli/version.hpp"
 
 namespace {
-
-/// Prints the examples, which are kept as the footer, before everything else.
-class ExamplesFirst : public CLI::Formatter {
- public:
-  std::string make_description(const CLI::App* app) const override {
-    return app->get_footer() + "\n" + CLI::Formatter::make_description(app) + "\n";
-  }
-  std::string make_footer(const CLI::App*) const override { return ""; }
-};
 
 /// Opens standard streams that the caller has closed. Otherwise a dataset could get their number,
 /// and results would be printed into it. The replacement cannot be written.
@@ -37,14 +29,6 @@ bool results_were_written() {
   return std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
 }
 
-/// Returns the version, and in a second line how patches are traced on this machine.
-std::string version_text() {
-  using namespace semigeo;
-  return SEMIGEO_VERSION "\nsimd: " +
-         std::string(kernels::name_of(jobs::chosen_instruction_set())) + " (this CPU has " +
-         jobs::supported_instruction_sets() + ")";
-}
-
 int run(int argc, char** argv) {
   using namespace semigeo::jobs::cli;
   std::string version;
@@ -55,7 +39,7 @@ int run(int argc, char** argv) {
     return kUsage;
   }
   CLI::App app{"semigeo turns archives of 3-D scans into multi-scale surface datasets.", "semigeo"};
-  app.formatter(std::make_shared<ExamplesFirst>());
+  app.formatter(std::make_shared<HelpFormatter>());
   app.footer(
       "Examples:\n"
       "  semigeo run scans/ --output archive     every scan below scans/ gets a dataset\n"
@@ -97,6 +81,7 @@ int run(int argc, char** argv) {
   add_bench(app, exit_code);
   add_job(app, exit_code);
   add_options_page(app);
+  add_system_files(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

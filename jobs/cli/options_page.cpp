@@ -2,10 +2,10 @@
 #include <cstdio>
 #include <map>
 #include <string>
-#include <utility>
 
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/execution_options.hpp"
+#include "jobs/cli/option_tree.hpp"
 #include "jobs/stages/surface_parameters.hpp"
 
 namespace semigeo::jobs::cli {
@@ -22,40 +22,6 @@ Keys keys_by_option(const ParameterTable<Owner>& table) {
   Keys keys;
   for (const Parameter<Owner>& row : table) keys[std::string("--") + row.name] = row.key;
   return keys;
-}
-
-/// Returns the text between two marks, or an empty string if they are not there.
-std::string between(const std::string& text, char first, char last) {
-  const std::size_t begin = text.find(first);
-  const std::size_t end = text.rfind(last);
-  if (begin == std::string::npos || end == std::string::npos || end < begin) return "";
-  return text.substr(begin + 1, end - begin - 1);
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
-    text.replace(at, from.size(), to);
-  return text;
-}
-
-/// Returns what stands behind the option: "curved|flat", "N", "SIZE"; empty for a flag.
-std::string placeholder(const CLI::Option& option) {
-  if (option.get_items_expected_max() == 0) return "";
-  const std::string type = option.get_type_name();
-  if (const std::string words = between(type, '{', '}'); !words.empty())
-    return replaced(words, ",", "|");
-  const std::pair<const char*, const char*> names[] = {
-      {"SIZE", "SIZE"}, {"DURATION", "TIME"}, {"INT", "N"}, {"FLOAT", "NUMBER"}};
-  for (const auto& [part, name] : names)
-    if (type.find(part) != std::string::npos) return name;
-  return "TEXT";
-}
-
-/// Returns the bounds of a number, "0 to 999", or an empty string.
-std::string range(const CLI::Option& option) {
-  const std::string type = option.get_type_name();
-  if (type.find(" in [") == std::string::npos) return "";
-  return replaced(between(type, '[', ']'), " - ", " to ");
 }
 
 /// Prints words, `indent` columns from the left, in lines of at most kLineWidth columns.
@@ -115,16 +81,19 @@ void print_command(const CLI::App& command, const std::string& name, const Keys&
   }
 }
 
-/// Prints the sections of all commands below `parent` that do something and are not hidden.
-void print_commands(const CLI::App& parent, const std::string& prefix, const Keys& surface,
-                    const Keys& execution) {
-  const auto is_shown = [](const CLI::App* command) { return !command->get_group().empty(); };
-  for (const CLI::App* command : parent.get_subcommands(is_shown)) {
-    const std::string name = prefix + command->get_name();
-    if (command->get_subcommands(is_shown).empty())
-      print_command(*command, name, surface, execution);
-    print_commands(*command, name + ' ', surface, execution);
-  }
+/// Prints a row of a list: a name, and what it means.
+void print_meaning(const std::string& name, std::string_view meaning) {
+  std::printf("- `%s`:\n", name.c_str());
+  print_paragraph(std::string(meaning), 2);
+}
+
+/// Prints what concerns every command.
+void print_conventions() {
+  std::printf("\n## Exit codes\n");
+  for (const ExitCode& exit : kExitCodes) print_meaning(std::to_string(exit.code), exit.meaning);
+  std::printf("\n## Environment\n");
+  for (const EnvironmentVariable& variable : kEnvironment)
+    print_meaning(std::string(variable.name), variable.meaning);
 }
 
 /// Prints docs/options.md.
@@ -149,7 +118,9 @@ void print_page(const CLI::App& app) {
       "\n## Jobs\n"
       "Options of every command that runs jobs. No byte of a result depends on them.\n\n");
   print_table(run, execution);
-  print_commands(app, "", surface, execution);
+  for (const ShownCommand& command : shown_commands(app))
+    if (!command.has_commands) print_command(*command.app, command.name, surface, execution);
+  print_conventions();
 }
 
 }  // namespace

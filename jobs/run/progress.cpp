@@ -1,6 +1,5 @@
 #include "jobs/run/progress.hpp"
 
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,22 +9,14 @@
 
 #include "io/files/number_text.hpp"
 #include "io/files/printable.hpp"
+#include "jobs/run/terminal.hpp"
 
 namespace semigeo::jobs {
 namespace {
 
 constexpr std::chrono::milliseconds kLiveInterval{200};
 constexpr std::chrono::seconds kPlainInterval{60};
-constexpr std::size_t kUsualWidth = 80;
 constexpr std::size_t kShortestName = 8;
-
-/// Returns the number of columns that a line may fill. The last column is left free, because some
-/// terminals wrap when it is written.
-std::size_t terminal_width() {
-  winsize size{};
-  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  return (known ? size.ws_col : kUsualWidth) - 1;
-}
 
 /// Returns both ends of `text` with dots between them, or all of it if it fits. `width` counts
 /// characters.
@@ -69,7 +60,7 @@ std::string short_duration(double seconds) {
 }
 
 Progress::Progress(std::int64_t jobs, std::uintmax_t bytes, bool quiet)
-    : jobs_(jobs), bytes_(bytes), terminal_(isatty(STDERR_FILENO) != 0), quiet_(quiet) {}
+    : jobs_(jobs), bytes_(bytes), terminal_(is_live_terminal(STDERR_FILENO)), quiet_(quiet) {}
 
 Progress::~Progress() {
   if (live_) std::fputs("\r\033[K", stderr);
@@ -121,7 +112,9 @@ void Progress::show(bool force) {
   const auto now = Clock::now();
   if (terminal_) {
     if (!force && now - shown_ < kLiveInterval) return;
-    std::fprintf(stderr, "\r\033[K%s", progress_line(counts(), current_, terminal_width()).c_str());
+    // The last column is left free, because some terminals wrap when it is written.
+    const std::size_t width = terminal_columns(STDERR_FILENO) - 1;
+    std::fprintf(stderr, "\r\033[K%s", progress_line(counts(), current_, width).c_str());
     live_ = true;
   } else {
     if (now - shown_ < kPlainInterval) return;

@@ -36,7 +36,9 @@ class UsageTest(SemigeoTest):
 
     def test_version_names_the_instruction_set(self):
         self.assertRegex(self.semigeo("--version").stdout,
-                         r"^\d+\.\d+\.\d+\nsimd: \w+ \(this CPU has scalar, baseline.*\)\n$")
+                         r"^\d+\.\d+\.\d+\ncommit: (unknown|[0-9a-f]{12}( with changes)?)\n"
+                         r"build: \w+ by .*, HDF5 \d.*\n"
+                         r"simd: \w+ \(this CPU has scalar, baseline.*\)\n$")
 
     def test_the_instruction_set_can_be_forced_and_changes_no_byte(self):
         write_ply(self.scans / "a.ply", icosphere(3))
