@@ -1,12 +1,13 @@
 // Bundles the pages and writes them as a C++ source: node build.mjs OUTPUT.cpp
 // Each page is one HTML file with its style and script in it. The program puts the data between
-// its two halves.
+// its two halves. src/page.html is what all pages share; src/NAME.html is the body of each, with
+// the parts src/theme.html and src/view.html.
 
 import { createHash } from "node:crypto";
 import { readFileSync, writeFileSync } from "node:fs";
 import { build, transform } from "esbuild";
 
-const names = ["index", "scan"];
+const names = ["index", "scan", "scene"];
 
 async function bundle(entry) {
   const result = await build({
@@ -24,7 +25,12 @@ async function halves(name) {
   const style = (await transform(readFileSync("src/report.css", "utf8"), { loader: "css", minify: true })).code;
   const policy = `default-src 'none'; script-src ${hash(script)}; style-src ${hash(style)}; img-src data: blob:; ` +
     "base-uri 'none'; form-action 'none'";
-  const page = readFileSync(`src/${name}.html`, "utf8")
+  const part = file => readFileSync(`src/${file}.html`, "utf8").trimEnd();
+  const page = `${part("page")}\n`
+    .replace("@BODY@", () => part(name))
+    .replace("@THEME@", () => part("theme"))
+    .replace("@VIEW@", () => part("view"))
+    .replace("@WHAT@", () => (name === "scene" ? "The scene and its models" : "The surface"))
     .replace("@POLICY@", () => policy)
     .replace("@STYLE@", () => style)
     .replace("@SCRIPT@", () => script);

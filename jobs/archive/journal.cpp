@@ -42,6 +42,7 @@ void for_each_field(RunStarted& event, const Visit& visit) {
   visit("jobs", event.jobs);
   visit("up_to_date", event.up_to_date);
   visit("input_bytes", event.input_bytes);
+  visit("passed_over", event.passed_over);
 }
 
 template <typename Visit>

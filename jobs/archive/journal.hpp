@@ -20,6 +20,7 @@ struct RunStarted {
   std::int64_t jobs = 0;  ///< Number of jobs to be done.
   std::int64_t up_to_date = 0;
   std::int64_t input_bytes = 0;  ///< Size of the scans that are to be read.
+  std::string passed_over = {};  ///< Files of folders that are no scans, in words.
   friend bool operator==(const RunStarted&, const RunStarted&) = default;
 };
 

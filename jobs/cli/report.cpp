@@ -1,16 +1,19 @@
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
-#include "io/dataset/dataset.hpp"
-#include "io/files/atomic_file.hpp"
-#include "io/files/error.hpp"
 #include "jobs/cli/command.hpp"
+#include "jobs/cli/failures.hpp"
 #include "jobs/cli/json_output.hpp"
 #include "jobs/cli/output.hpp"
+#include "jobs/cli/report_pages.hpp"
+#include "jobs/cli/run_plan.hpp"
+#include "jobs/cli/temporary_folder.hpp"
+#include "jobs/kinds/report.hpp"
+#include "jobs/kinds/report_plan.hpp"
 #include "jobs/report/archive_report.hpp"
-#include "jobs/report/page.hpp"
-#include "jobs/report/scan_page.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {
@@ -18,68 +21,81 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ReportOptions {
-  fs::path archive;
-  fs::path folder;  ///< Empty: ARCHIVE/report.
-  bool index_only = false;
-  bool json = false;
+  ReportPlace place;
+  ExecutionOptions execution;
 };
 
-/// What became of the pages of scans.
-struct ScanPages {
-  std::size_t made = 0;
-  std::size_t up_to_date = 0;
-  std::size_t failed = 0;
+/// The numbers of pages of scans and scenes by what became of them.
+struct PageCounts {
+  std::int64_t made = 0;
+  std::int64_t up_to_date = 0;
+  std::int64_t failed = 0;
 };
 
-/// Makes the pages of all scans that have a dataset, and links them from the document of the index.
-ScanPages make_scan_pages(const ReportOptions& options, const fs::path& folder,
-                          nlohmann::json& document) {
-  ScanPages pages_of_scans;
-  fs::create_directories(folder / "scans");
-  for (nlohmann::json& scan : document["scans"]) {
-    if (!scan.contains("vertices")) continue;  // no dataset that can be read
-    const auto name = scan["name"].get<std::string>();
-    const std::string page = "scans/" + name + ".html";
-    try {
-      const io::Dataset dataset(options.archive / "scans" / (name + ".vtkhdf"));
-      const bool made = make_scan_page(dataset, pages().scan, folder / page);
-      ++(made ? pages_of_scans.made : pages_of_scans.up_to_date);
-      scan["page"] = page;
-    } catch (const io::Error& e) {
-      complain(e);
-      ++pages_of_scans.failed;
-    }
+PageCounts count_pages(const RunResult& result) {
+  PageCounts counts;
+  for (std::size_t i = 0; i + 1 < result.plan.size(); ++i) {
+    const JobState state = result.outcomes[i].state;
+    counts.made += state == JobState::kDone ? 1 : 0;
+    counts.up_to_date += state == JobState::kUpToDate ? 1 : 0;
+    counts.failed += state == JobState::kFailed ? 1 : 0;
   }
-  return pages_of_scans;
+  return counts;
 }
 
-int report(const ReportOptions& options) {
-  if (!pages().missing.empty()) {
-    complain("this program has no report: ", pages().missing,
-             "; install node and npm, and build it again (CONTRIBUTING.md)");
-    return kUsage;
+/// Returns what the first page, which the last job of the plan makes, shows.
+ReportJobResult shown_in(const RunResult& result, const ReportPlace& place) {
+  const std::any& made = result.outcomes.back().result;
+  if (const auto* counts = std::any_cast<ReportJobResult>(&made)) return *counts;
+  if (!is_made(result.outcomes.back().state)) return {};
+  const nlohmann::json document = archive_report(place.archive, place.folder);
+  return {std::ssize(document["scans"]), std::ssize(document["failures"])};
+}
+
+void print_report(const RunResult& result, const ReportOptions& options) {
+  const PageCounts counts = count_pages(result);
+  const ReportJobResult shown = shown_in(result, options.place);
+  const fs::path& index = result.plan.back().job.output;
+  if (options.execution.json) {
+    nlohmann::json document = {{"report", index.string()},
+                               {"scans", shown.scans},
+                               {"failures", shown.failures},
+                               {"pages_made", counts.made},
+                               {"pages_up_to_date", counts.up_to_date},
+                               {"pages_failed", counts.failed}};
+    if (!result.stopped.empty()) document["stopped"] = result.stopped;
+    print_document(document);
+    return;
   }
-  nlohmann::json document = archive_report(options.archive);
-  document["version"] = SEMIGEO_VERSION;
-  const fs::path folder = options.folder.empty() ? options.archive / "report" : options.folder;
-  fs::create_directories(folder);
-  ScanPages scan_pages;
-  if (!options.index_only) scan_pages = make_scan_pages(options, folder, document);
-  const fs::path index = folder / "index.html";
-  io::write_file_atomically(index, page_with(pages().index, document));
-  const std::size_t scans = document["scans"].size();
-  const std::size_t failures = document["failures"].size();
-  if (options.json)
-    print_document({{"report", index.string()},
-                    {"scans", scans},
-                    {"failures", failures},
-                    {"pages_made", scan_pages.made},
-                    {"pages_up_to_date", scan_pages.up_to_date},
-                    {"pages_failed", scan_pages.failed}});
-  else
-    print(index, "\nscans: ", scans, ", failures: ", failures,
-          "; pages of scans: ", scan_pages.made, " made, ", scan_pages.up_to_date, " up to date\n");
-  return scan_pages.failed > 0 ? kSomeFailed : kAllDone;
+  const bool told = !options.execution.quiet && outputs_are_one_place();
+  print_failures(failures_of(result), told);
+  print_stop(result, told);
+  print(index, "\nscans: ", shown.scans, ", failures: ", shown.failures,
+        "; pages of scans and scenes: ", counts.made, " made, ", counts.up_to_date, " up to date",
+        counts.failed > 0 ? ", " + std::to_string(counts.failed) + " failed" : "", "\n");
+}
+
+/// Makes the report. It takes no lock and writes no journal, so that it can be made while a run is
+/// under way, and of an archive that cannot be written.
+int report(ReportOptions& options) {
+  if (lacks_pages()) return kUsage;
+  const TemporaryFolder temporary;
+  ReportPlace& place = options.place;
+  place.archive = fs::absolute(place.archive).lexically_normal();
+  if (place.folder.empty()) place.folder = report_folder(place.archive);
+  place.folder = fs::absolute(place.folder).lexically_normal();
+  return run_plan(options.execution,
+                  {.home = temporary.path(),
+                   .plan =
+                       [&](DigestCache&) {
+                         std::vector<PlannedJob> plan;
+                         DigestCache cache = DigestCache::read(place.archive);
+                         plan_report(plan, models_of(place.archive, {}, cache), place);
+                         return plan;
+                       },
+                   .is_archive = false,
+                   .is_kept = false,
+                   .print = [&](const RunResult& result) { print_report(result, options); }});
 }
 
 }  // namespace
@@ -91,20 +107,32 @@ void add_report(CLI::App& app, int& exit_code) {
   command->footer(
       "Examples:\n"
       "  semigeo report archive                  archive/report/index.html, a page for each scan\n"
-      "  semigeo report archive --output pages   pages/index.html, pages/scans/*.html\n"
+      "                                          and each recognised scene\n"
+      "  semigeo report archive --output pages   pages/index.html, pages/scans/*.html, ...\n"
       "  semigeo report archive --index-only     the table of all scans alone\n"
       "\n"
       "The pages open by double click, need no network and can be mailed. A page of a scan takes\n"
       "up to 6 MB; one that shows what the dataset holds is left as it is. Exit codes: 0 done,\n"
-      "1 something cannot be read or written, 2 this program was built without the report.\n");
-  command->add_option("archive", options->archive, "The archive")->required();
+      "1 something cannot be read or written, 2 usage, or this program was built without the\n"
+      "report, 75 stopped early.\n");
+  command->add_option("archive", options->place.archive, "The archive")
+      ->required()
+      ->configurable(false);
   command
-      ->add_option("-o,--output", options->folder,
+      ->add_option("-o,--output", options->place.folder,
                    "Folder of the pages; without it, ARCHIVE/report")
-      ->default_str("");
-  command->add_flag("--index-only", options->index_only, "Make no pages of single scans");
-  command->add_flag("--json", options->json, "As JSON");
-  command->callback([options, &exit_code] { exit_code = report(*options); });
+      ->default_str("")
+      ->configurable(false);
+  command->add_flag("--index-only", options->place.index_only, "Make no pages of single scans");
+  add_execution_options(*command, options->execution);
+  command->fallthrough();
+  command->callback([options, &exit_code] {
+    complete(options->execution);
+    if (options->execution.executor == ExecutorKind::kSlurm)
+      throw CLI::ValidationError("--executor",
+                                 "a report is made here; on a cluster, use semigeo run --report");
+    exit_code = report(*options);
+  });
 }
 
 }  // namespace semigeo::jobs::cli

@@ -10,9 +10,11 @@
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/leftovers_report.hpp"
 #include "jobs/cli/output.hpp"
+#include "jobs/cli/report_pages.hpp"
 #include "jobs/cli/run_plan.hpp"
 #include "jobs/cli/surface_options.hpp"
 #include "jobs/kinds/library_plan.hpp"
+#include "jobs/kinds/report_plan.hpp"
 #include "jobs/kinds/surface_plan.hpp"
 
 namespace semigeo::jobs::cli {
@@ -27,6 +29,7 @@ struct RunOptions {
   SurfaceOptions surface;
   ExecutionOptions execution;
   bool library = false;  ///< A library of all datasets of the archive is made as well.
+  bool report = false;   ///< Pages for a browser are made as well.
   bool prune = false;    ///< What is of scans that are gone is removed.
 };
 
@@ -104,19 +107,21 @@ std::vector<PlannedJob> make_plan(const RunOptions& options, const std::vector<F
   std::vector<PlannedJob> plan =
       plan_surfaces(archive, scans, options.surface.parameters, cache, threads);
   pruning.find(plan);
-  if (options.library) {
-    std::vector<LibraryModel> models = models_of(archive, plan, cache);
-    pruning.leave_out(models);
-    plan_library(plan, models, place_of_archive(archive), {});
-  }
+  std::vector<LibraryModel> models;
+  if (options.library || options.report) models = models_of(archive, plan, cache);
+  pruning.leave_out(models);
+  if (options.library) plan_library(plan, models, place_of_archive(archive), {});
   if (options.execution.verify) {
     verify_surfaces(plan, threads);
     verify_library_plan(plan);
   }
+  if (options.report)
+    plan_report(plan, models, {.archive = archive, .folder = report_folder(archive)});
   return plan;
 }
 
 int find_and_run(const RunOptions& options, const std::string& effective_config) {
+  if (options.report && lacks_pages()) return kUsage;
   FoundScans found;
   try {
     found = find_scans(options.inputs, options.archive);
@@ -138,6 +143,7 @@ int find_and_run(const RunOptions& options, const std::string& effective_config)
              prepare_archive(options.archive, effective_config, plan);
              pruning.remove();
            },
+       .passed_over = found.passed_over,
        .must_write = options.prune,
        .notes =
            [&] {
@@ -162,6 +168,9 @@ void add_options(CLI::App* command, RunOptions& options) {
       "--library", options.library,
       "Also build ARCHIVE/library.h5, in which scenes are recognised, of all datasets\n"
       "of the archive");
+  command->add_flag("--report", options.report,
+                    "Also make pages for a browser, as `semigeo report` does: "
+                    "ARCHIVE/report/index.html");
   command->add_flag("--prune", options.prune,
                     "Also remove what the archive has of scans that are gone from the folders, as\n"
                     "`semigeo prune` does");
@@ -187,6 +196,7 @@ void add_run(CLI::App& app, int& exit_code) {
       "  semigeo run scans/ --output archive --dry-run --explain   what differs\n"
       "  semigeo run scans/ --output archive --verify    also what the disk has damaged since\n"
       "  semigeo run scans/ --output archive --library   and a hash library of all datasets\n"
+      "  semigeo run scans/ --output archive --report    and pages for a browser\n"
       "  semigeo run scans/ --output archive --prune     removes what is of scans that are gone\n"
       "  semigeo run scans/ --output archive --executor slurm --slurm-option partition=long\n"
       "  semigeo run scans/ --output archive --executor slurm --no-wait   run again to see the "

@@ -103,6 +103,13 @@ int print_results(const ExecutionOptions& options, const PlanSource& source,
   return result.summary.failed == 0 && is_complete(result) ? kAllDone : kSomeFailed;
 }
 
+/// Returns what was passed over as one text: the notes, and the files by their kinds.
+std::string all_in_words(const PassedOver& passed_over) {
+  std::string text = in_words(passed_over);
+  for (const std::string& note : passed_over.notes) text += (text.empty() ? "" : "; ") + note;
+  return text;
+}
+
 int run(const ExecutionOptions& options, const PlanSource& source) {
   ChosenRunner chosen(options, source.home);
   RunHooks hooks{
@@ -127,6 +134,7 @@ int run(const ExecutionOptions& options, const PlanSource& source) {
                .is_archive = source.is_archive,
                .is_kept = source.is_kept,
                .is_quiet = options.quiet,
+               .passed_over = all_in_words(source.passed_over),
                .must_write = source.must_write},
               hooks);
   return exit_code;

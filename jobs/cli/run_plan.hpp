@@ -20,9 +20,10 @@ struct PlanSource {
   std::function<std::vector<PlannedJob>(DigestCache&)> plan;
   /// Prepares the folder after it was locked, before jobs run. It may write.
   std::function<void(const std::vector<PlannedJob>&)> prepare = {};
-  bool is_archive = true;   ///< The folder is an archive; rates of its jobs are learned.
-  bool is_kept = true;      ///< The folder is kept; otherwise it gets neither lock nor journal.
-  bool must_write = false;  ///< The folder must be writable even if no job has to run.
+  bool is_archive = true;       ///< The folder is an archive; rates of its jobs are learned.
+  bool is_kept = true;          ///< The folder is kept; otherwise it gets neither lock nor journal.
+  PassedOver passed_over = {};  ///< Files that were found and are no scans, for the journal.
+  bool must_write = false;      ///< The folder must be writable even if no job has to run.
   /// Prints the results instead of the report of a run.
   std::function<void(const RunResult&)> print = {};
   /// Returns what the report says besides the jobs. It is called after the plan was made.

@@ -2,21 +2,30 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
+#include <cctype>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "io/dataset/dataset.hpp"
 #include "io/dataset/dataset_header.hpp"
+#include "io/files/base64.hpp"
 #include "io/files/error.hpp"
+#include "io/files/file_digest.hpp"
 #include "jobs/archive/dataset_files.hpp"
 #include "jobs/archive/journal.hpp"
 #include "jobs/archive/path_text.hpp"
 #include "jobs/archive/sources.hpp"
 #include "jobs/archive/status.hpp"
+#include "jobs/report/page.hpp"
+#include "jobs/report/report_files.hpp"
+#include "jobs/report/run_figures.hpp"
+#include "jobs/report/run_history.hpp"
+#include "jobs/report/thumbnail.hpp"
+#include "jobs/stages/recognised_file.hpp"
 
 namespace semigeo::jobs {
 namespace {
@@ -24,25 +33,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kSurface = "surface ";
-
-/// The last word of the journal about the job that makes a dataset.
-struct SurfaceHistory {
-  std::map<std::string, JobEnded> last;  ///< The last end, by name of the dataset.
-  std::map<std::string, JobEnded> made;  ///< The last end with a dataset.
-};
-
-SurfaceHistory read_history(const fs::path& archive) {
-  SurfaceHistory history;
-  const auto note = [&](const JournalEntry& entry) {
-    const auto* job = std::get_if<JobEnded>(&entry.event);
-    if (job == nullptr || !job->job.starts_with(kSurface)) return;
-    const std::string name = job->job.substr(kSurface.size());
-    history.last[name] = *job;
-    if (job->state == "done") history.made[name] = *job;
-  };
-  read_journal(archive, note, std::numeric_limits<std::int64_t>::max());  // whole, for old scans
-  return history;
-}
 
 /// Adds a sentence such as "a.ply: line 4: has no number; mend it" as reason and remedy.
 void add_reason(nlohmann::json& record, const std::string& sentence) {
@@ -59,8 +49,9 @@ nlohmann::json without_zeros(const nlohmann::json& counts) {
   return result;
 }
 
-/// Adds what the dataset of a scan says. Throws io::Error if it cannot be read.
-void add_dataset(nlohmann::json& record, const fs::path& path) {
+/// Adds what the dataset of a scan says, and its thumbnail, which is drawn unless its page has it.
+/// Throws io::Error if the dataset cannot be read.
+void add_dataset(nlohmann::json& record, const fs::path& path, const std::string& icon) {
   const io::Dataset dataset(path);
   const io::DatasetHeader& header = dataset.header();
   const io::LevelInfo first = dataset.level(0);
@@ -75,12 +66,49 @@ void add_dataset(nlohmann::json& record, const fs::path& path) {
   record["level"] = level;
   record["features"] = dataset.level(static_cast<int>(level)).features.total();
   record["dataset_bytes"] = fs::file_size(path);
+  const auto drawn = [&] {
+    const std::string png = thumbnail_of(dataset);
+    return io::base64(std::as_bytes(std::span(png)));
+  };
+  record["thumbnail"] = icon.empty() ? drawn() : icon;
+}
+
+/// Returns a relative path as a URL, in which every byte but letters, digits and some marks is %XX.
+std::string url_of(const std::string& path) {
+  constexpr std::string_view kPlain = "-._~/";
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  std::string url;
+  for (const char c : path) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isalnum(byte) != 0 || kPlain.find(c) != std::string_view::npos)
+      url += c;
+    else
+      url.append({'%', kDigits[byte >> 4], kDigits[byte & 15]});
+  }
+  return url;
+}
+
+/// Returns the names of the files with this extension in a folder, sorted, without hidden ones.
+std::vector<std::string> names_in(const fs::path& folder, const char* extension) {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored))
+    if (entry.path().extension() == extension && !entry.path().filename().string().starts_with('.'))
+      names.push_back(entry.path().stem().string());
+  std::ranges::sort(names);
+  return names;
+}
+
+io::Error no_archive(const fs::path& folder) {
+  return {folder, "", "is no archive: it has no datasets and no journal",
+          "give the folder that was --output of a run"};
 }
 
 class ReportReader {
  public:
-  explicit ReportReader(const fs::path& archive)
+  ReportReader(const fs::path& archive, const fs::path& folder)
       : archive_(archive),
+        folder_(folder),
         status_(status_of(archive)),
         history_(read_history(archive)),
         sources_(Sources::read(archive)) {}
@@ -90,17 +118,16 @@ class ReportReader {
     std::map<std::string, fs::path> names;
     for (const fs::path& path : datasets) names[path.stem().string()] = path;
     for (const auto& [name, source] : sources_.by_name()) names.try_emplace(name);
-    for (const auto& [job, error] : status_.failed)
+    for (const auto& [job, error] : history_.run.failed)
       if (job.starts_with(kSurface)) names.try_emplace(job.substr(kSurface.size()));
-    if (names.empty() && !status_.last_run)
-      throw io::Error(archive_, "", "is no archive: it has no datasets and no journal",
-                      "give the folder that was --output of a run");
+    if (names.empty() && !status_.last_run) throw no_archive(archive_);
     for (const auto& [name, path] : names) scans_.push_back(scan(name, path));
     std::ranges::stable_sort(scans_, {}, [](const nlohmann::json& s) { return order_of(s); });
-    return {{"archive", fs::weakly_canonical(archive_).filename().string()},
+    return {{"archive", escaped(fs::weakly_canonical(archive_).filename().string())},
             {"run", run()},
             {"failures", failures()},
-            {"scans", scans_}};
+            {"scans", scans_},
+            {"scenes", scenes()}};
   }
 
  private:
@@ -111,11 +138,11 @@ class ReportReader {
   }
 
   nlohmann::json run() const {
-    nlohmann::json run = {{"state", state_of(status_)}};
-    if (!status_.last_run) return run;
-    run["started"] = status_.started;
-    run["seconds"] = status_.seconds;
-    run["vertex_levels_per_second"] = status_.vertex_levels_per_second();
+    if (history_.run.started.empty()) return {{"state", state_of(status_)}};
+    nlohmann::json run = figures_of(history_.night);
+    // The run that makes this page is still running, but it has ended in all other things.
+    const bool is_at_pages = status_.is_running() && history_.running.empty();
+    run["state"] = is_at_pages ? "ended" : state_of(status_);
     return run;
   }
 
@@ -126,7 +153,10 @@ class ReportReader {
       record["peak_bytes"] = made->second.peak_bytes;
     }
     try {
-      if (!dataset.empty()) add_dataset(record, dataset);
+      if (!dataset.empty()) {
+        add_dataset(record, dataset, read_icon(scan_page_path(folder_, name)));
+        add_page(record, scan_page_path(folder_, name));
+      }
     } catch (const io::Error& e) {
       record["state"] = "damaged";
       add_reason(record, e.what());
@@ -143,10 +173,17 @@ class ReportReader {
     return escaped(source->second.filename().string());
   }
 
+  /// Returns the title of a scan as the table of scans has it.
+  std::string shown_title_of(const std::string& name) const {
+    for (const nlohmann::json& scan : scans_)
+      if (scan["name"] == name) return scan["title"];
+    return title_of(name);
+  }
+
   void add_state(nlohmann::json& record, const std::string& name, bool has_dataset) const {
     const auto last = history_.last.find(name);
     const std::string ended = last == history_.last.end() ? "" : last->second.state;
-    if (status_.is_running() && status_.running.contains(std::string(kSurface) + name)) {
+    if (status_.is_running() && history_.running.contains(std::string(kSurface) + name)) {
       record["state"] = "running";
     } else if (ended == "failed" || (ended == "skipped" && !has_dataset)) {
       record["state"] = ended;
@@ -165,7 +202,7 @@ class ReportReader {
       if (scan.contains("remedy")) failure["remedy"] = scan["remedy"];
       list.push_back(std::move(failure));
     }
-    for (const auto& [job, error] : status_.failed) {
+    for (const auto& [job, error] : history_.run.failed) {
       if (job.starts_with(kSurface)) continue;
       nlohmann::json failure = {{"job", job}};
       add_reason(failure, error);
@@ -174,17 +211,94 @@ class ReportReader {
     return list;
   }
 
+  /// Adds the page of a scan or a scene, if it is there.
+  void add_page(nlohmann::json& record, const fs::path& page) const {
+    std::error_code ignored;
+    if (!fs::exists(page, ignored)) return;
+    record["page"] =
+        url_of(page.parent_path().filename().string() + "/" + page.filename().string());
+  }
+
+  nlohmann::json scenes() const {
+    nlohmann::json list = nlohmann::json::array();
+    for (const std::string& name : scene_names(archive_)) list.push_back(scene(name));
+    return list;
+  }
+
+  nlohmann::json scene(const std::string& name) const {
+    nlohmann::json record = {{"name", escaped(name)}, {"title", escaped(name)}};
+    try {
+      const nlohmann::json document = read_recognised(archive_ / "recognised" / (name + ".json"));
+      record["title"] = document.at("scene").at("input_name");
+      record["vertices"] = document.at("scene").at("vertices");
+      record["features"] = document.at("scene").at("features");
+      record["models_ranked"] = document.at("models_ranked");
+      record["objects"] = nlohmann::json::array();
+      for (const nlohmann::json& object : document.at("objects"))
+        record["objects"].push_back(
+            {{"title", shown_title_of(object.at("model"))}, {"score", object.at("score")}});
+      add_page(record, scene_page_path(folder_, name));
+    } catch (const io::Error& e) {
+      add_reason(record, e.what());
+    } catch (const nlohmann::json::exception&) {
+      record["reason"] = "it lacks a field";
+      record["remedy"] = "remove it, and recognise the scene again";
+    }
+    return record;
+  }
+
   fs::path archive_;
+  fs::path folder_;
   ArchiveStatus status_;
-  SurfaceHistory history_;
+  RunHistory history_;
   Sources sources_;
   std::vector<nlohmann::json> scans_;
 };
 
+/// Returns the key of a page, or an empty text.
+std::string key_of_page(const fs::path& page) {
+  try {
+    return read_page_key(page);
+  } catch (const io::Error&) {
+    return "";
+  }
+}
+
 }  // namespace
 
-nlohmann::json archive_report(const fs::path& archive) {
-  return ReportReader(archive).read();
+std::vector<std::string> scene_names(const fs::path& archive) {
+  std::vector<std::string> names = names_in(archive / "recognised", ".json");
+  std::erase(names, "sources");
+  return names;
+}
+
+std::string archive_digest(const fs::path& archive, const fs::path& folder) {
+  std::string content = read_history(archive).digest;
+  const auto add = [&](const std::string& text) { content.append("\n").append(text); };
+  const std::vector<fs::path> datasets = dataset_files(archive / "scans");
+  std::error_code ignored;
+  if (datasets.empty() && !fs::exists(archive / kJournalName, ignored)) throw no_archive(archive);
+  for (const fs::path& dataset : datasets) {
+    add(dataset.filename().string());
+    try {
+      add(io::read_origin(dataset).job_key);
+    } catch (const io::Error& e) {
+      add(e.what());
+    }
+    add(key_of_page(scan_page_path(folder, dataset.stem().string())));
+  }
+  const Sources sources = Sources::read(archive);
+  for (const auto& [name, source] : sources.by_name()) add(name);
+  for (const std::string& name : scene_names(archive)) {
+    add(name);
+    add(key_of_page(scene_page_path(folder, name)));
+    add(std::to_string(fs::file_size(archive / "recognised" / (name + ".json"), ignored)));
+  }
+  return io::xxh3_of_text(content);
+}
+
+nlohmann::json archive_report(const fs::path& archive, const fs::path& folder) {
+  return ReportReader(archive, folder).read();
 }
 
 }  // namespace semigeo::jobs

@@ -1,6 +1,11 @@
 #include "jobs/report/page.hpp"
 
 #include <nlohmann/json.hpp>
+#include <span>
+
+#include "io/files/base64.hpp"
+#include "io/files/error.hpp"
+#include "io/files/input_file.hpp"
 
 namespace semigeo::jobs {
 
@@ -18,6 +23,32 @@ std::string page_with(const PageTemplate& page, const nlohmann::json& data) {
   }
   text += page.behind;
   return text;
+}
+
+static constexpr std::string_view kNoIcon = "rel=\"icon\" href=\"data:,\"";
+static constexpr std::string_view kIcon = "rel=\"icon\" href=\"data:image/png;base64,";
+
+std::string with_icon(std::string page, std::string_view png) {
+  const std::size_t at = page.find(kNoIcon);
+  if (at == std::string::npos) return page;
+  const std::string icon = std::string(kIcon) + io::base64(std::as_bytes(std::span(png))) + '"';
+  return page.replace(at, kNoIcon.size(), icon);
+}
+
+std::string read_icon(const std::filesystem::path& page) {
+  constexpr std::size_t kMostBytes = 32 << 10;
+  try {
+    const io::InputFile file(page);
+    std::string text(kMostBytes, '\0');
+    text.resize(file.read_at(0, text));
+    const std::size_t at = text.find(kIcon);
+    if (at == std::string::npos) return "";
+    const std::size_t begin = at + kIcon.size();
+    const std::size_t end = text.find('"', begin);
+    return end == std::string::npos ? "" : text.substr(begin, end - begin);
+  } catch (const io::Error&) {
+    return "";
+  }
 }
 
 }  // namespace semigeo::jobs

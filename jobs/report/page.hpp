@@ -1,7 +1,9 @@
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 
 #include "jobs/report/pages.hpp"
 
@@ -10,5 +12,12 @@ namespace semigeo::jobs {
 /// Returns a page with its data. No text of the data can end the element that holds it or begin
 /// another, because every '<' is escaped. Bytes that are not UTF-8 become U+FFFD.
 std::string page_with(const PageTemplate& page, const nlohmann::json& data);
+
+/// Returns the page with a PNG as its icon.
+std::string with_icon(std::string page, std::string_view png);
+
+/// Returns the PNG that is the icon of a page, as base64, or an empty text if there is none or the
+/// page cannot be read. Reads the first kB only.
+std::string read_icon(const std::filesystem::path& page);
 
 }  // namespace semigeo::jobs

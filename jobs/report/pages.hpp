@@ -16,6 +16,7 @@ struct Pages {
   std::string_view missing;
   PageTemplate index = {};  ///< The table of all scans.
   PageTemplate scan = {};   ///< The surface of one scan and its data.
+  PageTemplate scene = {};  ///< A recognised scene and the models in it.
 };
 
 /// Returns the pages of this program.

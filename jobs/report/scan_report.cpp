@@ -10,9 +10,8 @@
 
 #include "io/dataset/dataset_header.hpp"
 #include "io/files/base64.hpp"
-#include "io/files/error.hpp"
 #include "jobs/picture/robust_limit.hpp"
-#include "kernels/repair/decimation.hpp"
+#include "jobs/report/shown_surface.hpp"
 #include "kernels/surface/vertex_rows.hpp"
 
 namespace semigeo::jobs {
@@ -24,93 +23,34 @@ using Eigen::Vector3f;
 /// vertex, two triangles, features and contours; as base64.
 constexpr double kBytesPerVertex = 70;
 
-/// The greatest number of vertices of a level: the corners of triangles have 16 bits.
-constexpr std::int64_t kMostVertices = 65536;
-
-/// The vertices and triangles of a level that are shown.
-struct ShownLevel {
-  std::vector<Vector3f> points;
-  std::vector<kernels::Triangle> triangles;
-  std::vector<std::int32_t> rows;  ///< Row of the level of each vertex; empty if all are shown.
-};
-
-ShownLevel read_surface(const io::Dataset& dataset, int level) {
-  ShownLevel shown;
-  const std::vector<float> points = dataset.read_floats(level, "points");
-  for (std::size_t i = 0; i < points.size(); i += 3)
-    shown.points.emplace_back(points[i], points[i + 1], points[i + 2]);
-  const std::vector<std::int64_t> corners = dataset.read_integers(level, "triangles");
-  const auto vertices = static_cast<std::int64_t>(shown.points.size());
-  for (std::size_t i = 0; i < corners.size(); i += 3) {
-    kernels::Triangle triangle = {};
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const std::int64_t vertex = corners[i + corner];
-      if (vertex < 0 || vertex >= vertices)
-        throw io::Error(dataset.path(), io::level_path(level) + "/triangles",
-                        "has a corner that is no vertex", "make the dataset again");
-      triangle[corner] = static_cast<std::int32_t>(vertex);
-    }
-    shown.triangles.push_back(triangle);
+/// Counts the values of valid vertices in equal bins between -limit and limit. The outer bins also
+/// have what lies beyond.
+std::vector<std::int64_t> histogram(const std::vector<float>& values,
+                                    const std::vector<float>& completeness, float limit) {
+  constexpr int kBins = 48;
+  std::vector<std::int64_t> counts(kBins);
+  for (std::size_t v = 0; v < values.size(); ++v) {
+    if (completeness[v] <= 0 || !std::isfinite(values[v])) continue;
+    const float place = limit > 0 ? (values[v] / limit + 1) / 2 * kBins : kBins / 2;
+    ++counts[static_cast<std::size_t>(std::clamp(place, 0.0f, kBins - 1.0f))];
   }
-  return shown;
+  return counts;
 }
 
-/// Decimates a level that has more vertices than may be shown.
-void decimate(ShownLevel& shown, std::int64_t vertices) {
-  if (static_cast<std::int64_t>(shown.points.size()) <= vertices) return;
-  kernels::Surface surface;
-  const auto all = static_cast<std::int64_t>(shown.points.size());
-  static_cast<kernels::Connectivity&>(surface) = kernels::connect(std::move(shown.triangles), all);
-  surface.points = std::move(shown.points);
-  surface.part_count = kernels::number_parts(surface, surface.part);
-  kernels::DecimatedSurface small =
-      kernels::decimate(surface, {.target_vertices = vertices, .measure = false});
-  shown.points = std::move(small.surface.points);
-  shown.triangles = std::move(small.surface.triangles);
-  shown.rows = std::move(small.source_vertex);
-}
-
-/// Returns the box of the points as an origin and one size, so that fractions keep proportions.
-struct Box {
-  Vector3f low = Vector3f::Zero();
-  float size = 0;
-};
-
-Box box_of(const std::vector<Vector3f>& points) {
-  Box box;
-  if (points.empty()) return box;
-  Vector3f high = points.front();
-  box.low = points.front();
-  for (const Vector3f& p : points) {
-    box.low = box.low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  box.size = (high - box.low).maxCoeff();
-  return box;
-}
-
-std::vector<std::uint16_t> fractions(const std::vector<Vector3f>& points, const Box& box) {
-  constexpr float kMost = std::numeric_limits<std::uint16_t>::max();
-  const float scale = box.size > 0 ? kMost / box.size : 0;
-  std::vector<std::uint16_t> result;
-  for (const Vector3f& p : points)
-    for (const float x : (scale * (p - box.low)).eval())
-      result.push_back(static_cast<std::uint16_t>(std::clamp(x + 0.5f, 0.0f, kMost)));
-  return result;
-}
-
-std::vector<float> shown_values(std::vector<float> values, const ShownLevel& shown) {
+std::vector<float> shown_values(std::vector<float> values, const ShownSurface& shown) {
   return shown.rows.empty() ? std::move(values) : kernels::gathered(values, shown.rows);
 }
 
 void add_fields(nlohmann::json& json, const io::Dataset& dataset, int level,
-                const ShownLevel& shown) {
+                const ShownSurface& shown) {
   std::vector<float> completeness = dataset.read_floats(level, "patch_completeness");
   for (const auto& [name, array] :
        {std::pair("K", "gaussian_curvature"), std::pair("H", "mean_curvature")}) {
     std::vector<float> values = dataset.read_floats(level, array);
     const std::array<FieldValues, 1> field = {{{values, completeness}}};
-    json["limits"][name] = robust_limit(field);
+    const float limit = robust_limit(field);
+    json["limits"][name] = limit;
+    json["histograms"][name] = histogram(values, completeness, limit);
     for (std::size_t v = 0; v < values.size(); ++v)
       if (completeness[v] <= 0) values[v] = std::numeric_limits<float>::quiet_NaN();
     json[name] = io::base64_of(shown_values(std::move(values), shown));
@@ -122,23 +62,10 @@ void add_fields(nlohmann::json& json, const io::Dataset& dataset, int level,
   json["completeness"] = io::base64_of(shares);
 }
 
-void add_surface(nlohmann::json& json, const ShownLevel& shown, const Box& box) {
-  json["low"] = {box.low.x(), box.low.y(), box.low.z()};
-  json["size"] = box.size;
-  json["shown_vertices"] = shown.points.size();
-  json["points"] = io::base64_of(fractions(shown.points, box));
-  if (!shown.rows.empty()) json["rows"] = io::base64_of(shown.rows);
-  std::vector<std::uint16_t> corners;
-  for (const kernels::Triangle& triangle : shown.triangles)
-    for (const std::int32_t corner : triangle)
-      corners.push_back(static_cast<std::uint16_t>(corner));
-  json["triangles"] = io::base64_of(corners);
-}
-
 /// Adds the most prominent features of each kind, at most as many of a kind as an eighth of the
 /// vertices that are shown.
-void add_features(nlohmann::json& json, kernels::FeaturesByKind features, const ShownLevel& shown,
-                  const Box& box) {
+void add_features(nlohmann::json& json, kernels::FeaturesByKind features, const ShownSurface& shown,
+                  const ShownBox& box) {
   const std::size_t most = std::max<std::size_t>(64, shown.points.size() / 8);
   for (int kind = 0; kind < kernels::kFeatureKinds; ++kind) {
     std::vector<kernels::Feature>& all = features[kind];
@@ -154,7 +81,7 @@ void add_features(nlohmann::json& json, kernels::FeaturesByKind features, const 
 
 /// Adds contours as segments between every `stride`-th of their points.
 void add_contours(nlohmann::json& json, const io::Dataset& dataset, int level,
-                  const ShownLevel& shown, const Box& box) {
+                  const ShownSurface& shown, const ShownBox& box) {
   for (int kind = 0; kind < kernels::kContourKinds; ++kind) {
     const kernels::SampledContours contours =
         dataset.read_contours(level, static_cast<kernels::FeatureKind>(kind));
@@ -187,9 +114,8 @@ nlohmann::json level_json(const io::Dataset& dataset, int level, std::int64_t ve
                          {"vertices", info.vertices},
                          {"triangle_count", info.triangles},
                          {"parts", info.parts}};
-  ShownLevel shown = read_surface(dataset, level);
-  decimate(shown, vertices);
-  const Box box = box_of(shown.points);
+  const ShownSurface shown = decimated(read_shown_surface(dataset, level), vertices);
+  const ShownBox box = box_of(shown.points);
   add_surface(json, shown, box);
   add_fields(json, dataset, level, shown);
   add_features(json, dataset.read_features(level), shown, box);
@@ -215,11 +141,14 @@ nlohmann::json scan_report(const io::Dataset& dataset, const ScanPageLimits& lim
   const io::DatasetHeader& header = dataset.header();
   const io::Selection selection = dataset.selection();
   const std::set<int> chosen = shown_levels(dataset, limits.levels);
-  const auto vertices = std::min({kMostVertices, limits.vertices,
+  const auto vertices = std::min({kMostShownVertices, limits.vertices,
                                   static_cast<std::int64_t>(limits.bytes / kBytesPerVertex /
                                                             static_cast<double>(chosen.size()))});
   nlohmann::json levels = nlohmann::json::array();
   for (const int level : chosen) levels.push_back(level_json(dataset, level, vertices));
+  std::vector<double> scales;
+  for (int level = 0; level < dataset.level_count(); ++level)
+    scales.push_back(dataset.scale(level));
   return {{"title", header.input_name},
           {"file", dataset.path().filename().string()},
           {"unit", header.length_unit},
@@ -234,6 +163,7 @@ nlohmann::json scan_report(const io::Dataset& dataset, const ScanPageLimits& lim
           {"level", selection.level},
           {"chosen", io::name_of(selection.chosen)},
           {"feature_counts", selection.feature_counts},
+          {"scales", std::move(scales)},
           {"levels", std::move(levels)}};
 }
 

@@ -88,7 +88,8 @@ class Run {
                                                 .threads = settings_.threads,
                                                 .jobs = jobs_to_run(),
                                                 .up_to_date = result_.summary.up_to_date,
-                                                .input_bytes = bytes_to_read(result_.plan)});
+                                                .input_bytes = bytes_to_read(result_.plan),
+                                                .passed_over = settings_.passed_over});
   }
 
   void execute_plan() {

@@ -34,13 +34,14 @@ struct RunSummary {
 struct RunSettings {
   /// Folder that has the lock, the journal, the logs and what was learned.
   std::filesystem::path home;
-  std::string program_version;  ///< For the journal.
-  int threads = 0;              ///< For the journal; 0: one per core.
-  bool verify = false;          ///< Outputs are read instead of trusting the digest cache.
-  bool is_archive = true;       ///< The home is an archive; rates of its jobs are learned.
-  bool is_kept = true;          ///< The home is kept; otherwise it gets neither lock nor journal.
-  bool is_quiet = false;        ///< No progress is printed.
-  bool must_write = false;      ///< A home that cannot be written is a failure in any case.
+  std::string program_version;   ///< For the journal.
+  int threads = 0;               ///< For the journal; 0: one per core.
+  bool verify = false;           ///< Outputs are read instead of trusting the digest cache.
+  bool is_archive = true;        ///< The home is an archive; rates of its jobs are learned.
+  bool is_kept = true;           ///< The home is kept; otherwise it gets neither lock nor journal.
+  bool is_quiet = false;         ///< No progress is printed.
+  std::string passed_over = {};  ///< For the journal: files that are no scans, in words.
+  bool must_write = false;       ///< A home that cannot be written is a failure in any case.
 };
 
 /// The plan of a run and what has become of its jobs.

@@ -15,11 +15,23 @@ export const invalidColour: Colour = [0.45, 0.45, 0.47];
 /// The colour of a surface without a field.
 export const plainColour: Colour = [0.72, 0.74, 0.78];
 
+/// Returns the colour at a share of the way through a list.
+function between(list: Colour[], share: number): Colour {
+  const place = Math.min(1, Math.max(0, share)) * (list.length - 1);
+  const first = Math.min(list.length - 2, Math.floor(place));
+  const rest = place - first;
+  return [0, 1, 2].map(i => list[first][i] + rest * (list[first + 1][i] - list[first][i])) as Colour;
+}
+
 /// Returns the colour of a value between -1 and 1; what lies outside has the colour of the end.
 export function colourOf(palette: Palette, value: number): Colour {
-  const list = stops[palette];
-  const place = Math.min(1, Math.max(0, (value + 1) / 2)) * (list.length - 1);
-  const first = Math.min(list.length - 2, Math.floor(place));
-  const share = place - first;
-  return [0, 1, 2].map(i => list[first][i] + share * (list[first + 1][i] - list[first][i])) as Colour;
+  return between(stops[palette], (value + 1) / 2);
+}
+
+// From dark blue over green to yellow: lightness alone tells near from far.
+const distances: Colour[] = [[0.1, 0.13, 0.42], [0.12, 0.42, 0.56], [0.2, 0.64, 0.47], [0.6, 0.83, 0.27], [0.99, 0.91, 0.15]];
+
+/// Returns the colour of a distance between 0 and 1, as a share of the largest.
+export function distanceColour(share: number): Colour {
+  return between(distances, share);
 }

@@ -1,6 +1,7 @@
-// The first page of a report: totals, failures, and a table of all scans.
+// The first page of a report: totals, failures, the last run, recognised scenes, and a table of all scans.
 
-import { addThemeSwitch, bytesText, countsText, element, make, pageData, secondsText, wholeText } from "./page";
+import { areaChart } from "./charts";
+import { addThemeSwitch, bytesText, countsText, element, make, pageData, secondsText, shortText, wholeText } from "./page";
 
 type State = "failed" | "damaged" | "skipped" | "missing" | "running" | "done";
 
@@ -12,6 +13,7 @@ interface Scan {
   reason?: string;
   remedy?: string;
   page?: string;
+  thumbnail?: string;
   unit?: string;
   vertices?: number;
   parts?: number;
@@ -30,12 +32,37 @@ interface Failure {
   remedy?: string;
 }
 
+/// A recognised scene.
+interface Scene {
+  title: string;
+  page?: string;
+  reason?: string;
+  vertices?: number;
+  features?: number;
+  objects?: { title: string; score: number }[];
+}
+
+/// The last run, as jobs/report/run_figures.hpp describes it.
+interface Run {
+  state: string;
+  started?: string;
+  seconds?: number;
+  host?: string;
+  threads?: number;
+  peak_bytes?: number;
+  passed_over?: string;
+  vertex_levels_per_second?: number;
+  core_time?: { computing: number; waiting: number; held: number; tail: number };
+  curve?: { seconds: number; rate: number[] };
+}
+
 interface Report {
   archive: string;
   version: string;
-  run: { state: string; started?: string; seconds?: number; vertex_levels_per_second?: number };
+  run: Run;
   failures: Failure[];
   scans: Scan[];
+  scenes: Scene[];
 }
 
 interface Column {
@@ -46,6 +73,7 @@ interface Column {
   value: (scan: Scan) => string | number | undefined;
   text: (scan: Scan) => string;
   className?: string;
+  isPicture?: boolean;
 }
 
 const none = "–";
@@ -55,6 +83,7 @@ const stateWords: Record<State, string> = {
   done: "✓ done",
 };
 const failuresAtFirst = 20;
+const manyRows = 400;
 
 function numeric(title: string, explanation: string, value: (scan: Scan) => number | undefined,
   text: (value: number) => string = wholeText): Column {
@@ -68,6 +97,8 @@ function numeric(title: string, explanation: string, value: (scan: Scan) => numb
 }
 
 const columns: Column[] = [
+  { title: "Picture", explanation: "The surface, coloured by mean curvature", numeric: false, isPicture: true,
+    value: () => undefined, text: () => "" },
   { title: "Name", explanation: "Name of the scan", numeric: false, value: s => s.title, text: s => s.title },
   { title: "State", explanation: "What became of the scan", numeric: false,
     value: s => stateOrder.indexOf(s.state), text: s => stateWords[s.state], className: "state" },
@@ -89,7 +120,8 @@ const collator = new Intl.Collator(undefined, { numeric: true });
 const rows = new Map<Scan, HTMLTableRowElement>();
 const texts = new Map<Scan, string>();
 const hiddenStates = new Set<State>();
-let sortedBy = 1;
+const nameColumn = 1;
+let sortedBy = 2;
 let descending = false;
 
 const simplified = (text: string): string => text.normalize("NFKC").toLowerCase();
@@ -101,6 +133,7 @@ function showHead(): void {
   const parts = [`last run: ${run.state}`];
   if (run.started) parts.push(`started ${run.started.replace("T", " ").replace("Z", " UTC")}`);
   if (run.seconds) parts.push(`took ${secondsText(run.seconds)}`);
+  if (run.host) parts.push(`on ${run.host}`);
   element("run").textContent = parts.join(", ");
   element("made").textContent = `Made by semigeo ${report.version}.`;
 }
@@ -157,27 +190,108 @@ function showFailures(): void {
   });
 }
 
+/// Names what bounded a run, by what its cores did.
+function boundText(time: NonNullable<Run["core_time"]>): string {
+  const percent = (share: number): string => `${Math.round(100 * share)} %`;
+  if (time.computing >= 0.7) return `The cores bounded this run: they computed for ${percent(time.computing)} of the time.`;
+  const most = Math.max(time.waiting, time.held, time.tail);
+  if (most === time.waiting)
+    return `The disk or other programs bounded this run: jobs had cores, but waited for ${percent(most)} of the time.`;
+  if (most === time.tail)
+    return `The last jobs bounded this run: for ${percent(most)} of the time cores were free, and no other job was left.`;
+  return `Memory, or jobs that others wait for, bounded this run: for ${percent(most)} of the time cores were free, ` +
+    "and jobs were left that could not begin.";
+}
+
+function showRun(): void {
+  const run = report.run;
+  element("night").hidden = !run.seconds;
+  if (run.core_time) {
+    element("bound").textContent = boundText(run.core_time);
+    const names = { computing: "cores were computing", waiting: "cores waited for the disk or other programs",
+      held: "cores were free, but jobs could not begin", tail: "cores were free at the end" } as const;
+    for (const [key, name] of Object.entries(names))
+      element("core-time").append(make("dt", name), make("dd", `${(100 * run.core_time[key as keyof typeof names]).toFixed(0)} %`));
+    if (run.threads) element("core-time").append(make("dt", "cores"), make("dd", wholeText(run.threads)));
+    if (run.peak_bytes) element("core-time").append(make("dt", "largest job"), make("dd", bytesText(run.peak_bytes)));
+  }
+  else if (run.seconds) element("bound").textContent = "The run was too short to say what bounded it.";
+  if (run.passed_over) element("passed-over").textContent = `Passed over: ${run.passed_over}`;
+  if (!run.curve) return;
+  const { seconds, rate } = run.curve;
+  const most = Math.max(...rate);
+  const length = seconds * rate.length;
+  element("throughput").append(areaChart({
+    sentence: `Throughput over ${secondsText(length)}: at most ${wholeText(Math.round(most))} vertex levels per second, ` +
+      `${wholeText(Math.round(run.vertex_levels_per_second ?? 0))} on average.`,
+    x: { title: "time since the start", low: 0, high: length, text: secondsText },
+    y: { title: "vertex levels / s", low: 0, high: most, text: shortText },
+  }, rate));
+}
+
+function sceneRow(scene: Scene): HTMLTableRowElement {
+  const row = make("tr");
+  const name = make("th");
+  name.scope = "row";
+  name.append(nameOf(scene.title, scene.page));
+  const objects = make("td", "", "wide-cell");
+  if (scene.reason) objects.textContent = scene.reason;
+  else if (!scene.objects?.length) objects.textContent = "none";
+  else scene.objects.forEach((object, place) =>
+    objects.append(place ? ", " : "", make("bdi", object.title), ` (${object.score.toFixed(2)})`));
+  const count = (value?: number): HTMLElement => make("td", value === undefined ? none : wholeText(value), "number");
+  row.append(name, objects, count(scene.vertices), count(scene.features));
+  return row;
+}
+
+function showScenes(): void {
+  element("scenes").hidden = report.scenes.length === 0;
+  element("scene-rows").append(...report.scenes.map(sceneRow));
+}
+
+/// Returns a name that leads to its page, if there is one. A name may be of any script.
+function nameOf(title: string, page: string | undefined): HTMLElement {
+  const name = page ? make("a") : make("bdi");
+  name.textContent = title;
+  name.dir = "auto";
+  if (name instanceof HTMLAnchorElement && page) name.href = page;
+  return name;
+}
+
+/// The picture says nothing that the row does not say, so that it has no text.
+function pictureOf(scan: Scan): HTMLElement {
+  if (!scan.thumbnail) return make("span", "", "no-picture");
+  const picture = make("img");
+  picture.alt = "";
+  picture.width = picture.height = 64;
+  picture.decoding = "async";
+  picture.src = `data:image/png;base64,${scan.thumbnail}`;
+  return picture;
+}
+
 function cellOf(column: Column, scan: Scan): HTMLTableCellElement {
-  const isName = column === columns[0];
+  const isName = column === columns[nameColumn];
   const cell = make(isName ? "th" : "td");
+  cell.setAttribute("role", isName ? "rowheader" : "cell");
+  if (column.className) cell.className = column.className;
+  if (column.numeric) cell.className = "number";
   if (isName) {
     cell.scope = "row";
-    const name = scan.page ? make("a") : make("bdi");
-    name.textContent = scan.title;
-    name.dir = "auto";
-    if (name instanceof HTMLAnchorElement && scan.page) name.href = scan.page;
-    cell.append(name);
-    return cell;
+    cell.append(nameOf(scan.title, scan.page));
+  } else if (column.isPicture) {
+    cell.className = "picture";
+    cell.append(pictureOf(scan));
+  } else {
+    cell.textContent = column.text(scan);
+    cell.dataset.title = column.title;
   }
-  cell.textContent = column.text(scan);
-  if (column.numeric) cell.className = "number";
-  if (column.className) cell.className = column.className;
   if (column.className === "state") cell.classList.add(scan.state);
   return cell;
 }
 
 function rowOf(scan: Scan): HTMLTableRowElement {
   const row = make("tr");
+  row.setAttribute("role", "row");
   row.append(...columns.map(column => cellOf(column, scan)));
   return row;
 }
@@ -196,15 +310,27 @@ function compare(a: Scan, b: Scan): number {
   return collator.compare(a.title, b.title);
 }
 
+/// Sorts the rows and says so in the heads of the columns. The rows are moved out of the page, so
+/// that the browser lays them out once.
 function sortRows(): void {
   const sorted = [...report.scans].sort(compare);
-  element("rows").append(...sorted.map(scan => rows.get(scan) as HTMLTableRowElement));
+  const fragment = document.createDocumentFragment();
+  for (const scan of sorted) fragment.append(rows.get(scan) as HTMLTableRowElement);
+  element("rows").append(fragment);
   element("columns").querySelectorAll("th").forEach((head, place) => {
-    const mark = head.querySelector("span") as HTMLSpanElement;
-    mark.textContent = place !== sortedBy ? "" : descending ? " ▼" : " ▲";
+    const mark = head.querySelector("span");
+    if (mark) mark.textContent = place !== sortedBy ? "" : descending ? " ▼" : " ▲";
     if (place === sortedBy) head.setAttribute("aria-sort", descending ? "descending" : "ascending");
     else head.removeAttribute("aria-sort");
   });
+  element<HTMLSelectElement>("sort").value = String(sortedBy);
+  element("direction").textContent = descending ? "▼ descending" : "▲ ascending";
+}
+
+function sortBy(place: number, down: boolean): void {
+  sortedBy = place;
+  descending = down;
+  sortRows();
 }
 
 function filterRows(): void {
@@ -220,23 +346,30 @@ function filterRows(): void {
 }
 
 function showColumns(): void {
+  const select = element<HTMLSelectElement>("sort");
   columns.forEach((column, place) => {
-    const head = make("th", "", column.numeric ? "number" : "");
+    const head = make("th", "", column.numeric ? "number" : column.isPicture ? "picture" : "");
     head.scope = "col";
+    head.setAttribute("role", "columnheader");
+    element("columns").append(head);
+    if (column.isPicture) {
+      head.append(make("span", column.title, "for-readers"));
+      return;
+    }
     const button = make("button", column.title);
     button.type = "button";
     button.title = column.explanation;
     const mark = make("span");
     mark.setAttribute("aria-hidden", "true");
     button.append(mark);
-    button.addEventListener("click", () => {
-      descending = place === sortedBy ? !descending : false;
-      sortedBy = place;
-      sortRows();
-    });
+    button.addEventListener("click", () => sortBy(place, place === sortedBy && !descending));
     head.append(button);
-    element("columns").append(head);
+    const option = make("option", column.title);
+    option.value = String(place);
+    select.append(option);
   });
+  select.addEventListener("change", () => sortBy(Number(select.value), false));
+  element("direction").addEventListener("click", () => sortBy(sortedBy, !descending));
 }
 
 function showStates(): void {
@@ -270,12 +403,16 @@ addThemeSwitch();
 showHead();
 showTotals();
 showFailures();
+showRun();
+showScenes();
 showColumns();
 showStates();
 for (const scan of report.scans) {
   rows.set(scan, rowOf(scan));
   texts.set(scan, simplified([scan.title, scan.name, scan.unit, scan.reason].join(" ")));
 }
+// Rows out of view are laid out when they come into view, if they are many.
+element("table").classList.toggle("many", report.scans.length > manyRows);
 sortRows();
 filterRows();
 element("search").addEventListener("input", filterRows);

@@ -36,6 +36,7 @@ export function addThemeSwitch(changed: () => void = () => undefined): void {
   } catch {
     // The browser keeps nothing for local files.
   }
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", changed);
   select.addEventListener("change", () => {
     apply();
     try {
@@ -56,6 +57,12 @@ export function wholeText(value: number): string {
 /// Returns a real number with this many significant digits.
 export function realText(value: number, digits = 4): string {
   return Number.isFinite(value) ? String(Number(value.toPrecision(digits))) : "not a number";
+}
+
+/// Returns a number in a few characters: "120 k".
+export function shortText(value: number): string {
+  if (value >= 1e6) return `${realText(value / 1e6, 3)} M`;
+  return value >= 1e3 ? `${realText(value / 1e3, 3)} k` : realText(value, 3);
 }
 
 export function secondsText(seconds: number): string {
@@ -79,4 +86,22 @@ export function countsText(counts: Record<string, number>): string {
     return count === 1 ? many.replace(/vertices$/, "vertex").replace(/s$/, "") : many;
   };
   return Object.entries(counts).map(([name, count]) => `${wholeText(count)} ${words(name, count)}`).join(", ");
+}
+
+/// Returns a value of JSON as text for people.
+export function valueText(value: unknown): string {
+  if (Array.isArray(value)) return value.map(valueText).join(", ");
+  if (value !== null && typeof value === "object")
+    return Object.entries(value).map(([name, one]) => `${name} ${valueText(one)}`).join(", ");
+  return String(value);
+}
+
+/// Adds names and values to a list.
+export function showPairs(id: string, pairs: [string, string][]): void {
+  const list = element(id);
+  for (const [name, value] of pairs) {
+    const text = make("dd", value);
+    text.dir = "auto";
+    list.append(make("dt", name), text);
+  }
 }

@@ -2,8 +2,10 @@
 
 import { floats, frameOf, framedPoints, integers, octets, words } from "./arrays";
 import { type Palette, colourOf } from "./colours";
-import { addThemeSwitch, countsText, element, make, pageData, realText, wholeText } from "./page";
-import { SurfaceView } from "./view";
+import { barChart, lineChart } from "./charts";
+import { addThemeSwitch, countsText, element, make, pageData, realText, showPairs, valueText, wholeText } from "./page";
+import type { Form, Hit } from "./view";
+import { matchBackground, showLegend, startView } from "./viewer";
 
 type Field = "H" | "K";
 
@@ -24,6 +26,7 @@ interface Level {
   H: string;
   completeness: string;
   limits: Record<Field, number>;
+  histograms: Record<Field, number[]>;
   features: Record<string, { count: number; points: string }>;
   contours: Record<string, { count: number; points: string; offsets: string }>;
 }
@@ -43,6 +46,7 @@ interface Scan {
   level: number;
   chosen: string;
   feature_counts: number[];
+  scales: number[];
   levels: Level[];
 }
 
@@ -50,25 +54,26 @@ interface Scan {
 interface Kind {
   name: string;
   title: string;
+  mark: string;
+  form: Form;
   colour: string;
 }
 
 const featureKinds: Kind[] = [
-  { name: "gaussian", title: "■ maxima of |K|", colour: "#111111" },
-  { name: "mean", title: "■ maxima of |H|", colour: "#d01c8b" },
-  { name: "gaussian_torsion", title: "■ torsion on K = 0", colour: "#00a08a" },
-  { name: "mean_torsion", title: "■ torsion on H = 0", colour: "#7b3ff2" },
+  { name: "gaussian", title: "maxima of |K|", mark: "●", form: "circle", colour: "#111111" },
+  { name: "mean", title: "maxima of |H|", mark: "■", form: "square", colour: "#d01c8b" },
+  { name: "gaussian_torsion", title: "torsion on K = 0", mark: "▲", form: "triangle", colour: "#007a69" },
+  { name: "mean_torsion", title: "torsion on H = 0", mark: "◆", form: "diamond", colour: "#6a2ee0" },
 ];
 const contourKinds: Kind[] = [
-  { name: "gaussian", title: "━ K = 0", colour: "#111111" },
-  { name: "mean", title: "━ H = 0", colour: "#d01c8b" },
+  { name: "gaussian", title: "K = 0", mark: "━━", form: "circle", colour: "#111111" },
+  { name: "mean", title: "H = 0", mark: "╍╍", form: "circle", colour: "#d01c8b" },
 ];
 
 const scan = pageData<Scan>();
 const unit = scan.unit === "unknown" ? "" : scan.unit;
 const slider = element<HTMLInputElement>("level");
 const checked = (id: string): boolean => element<HTMLInputElement>(id).checked;
-let view: SurfaceView | undefined;
 let fields: Record<Field, Float32Array> = { H: new Float32Array(), K: new Float32Array() };
 let completeness: Uint8Array = new Uint8Array();
 let rows: Uint32Array | undefined;
@@ -81,6 +86,7 @@ function curvatureText(field: Field, value: number): string {
 
 const lengthText = (value: number): string => realText(value) + (unit ? ` ${unit}` : "");
 
+const view = startView(probe);
 const frame = frameOf(scan.levels[0].points, scan.levels[0]);
 const pointsOf = (text: string): Float32Array => framedPoints(text, levelNow(), frame);
 
@@ -91,43 +97,34 @@ function fieldNow(): Field | undefined {
   return value === "none" ? undefined : value as Field;
 }
 
-function showLegend(field: Field | undefined): void {
-  element("legend").hidden = !field;
-  if (!field) return;
+function showScale(field: Field, palette: Palette): void {
   const limit = levelNow().limits[field];
   const low = curvatureText(field, -limit);
   const high = curvatureText(field, limit);
-  element("low").textContent = `${field} ≤ ${low}`;
-  element("high").textContent = `≥ ${high}`;
-  element("legend").setAttribute("aria-label", `${field} from ${low} over 0 in the middle to ${high}`);
-  const palette = element<HTMLSelectElement>("palette").value as Palette;
-  const context = element<HTMLCanvasElement>("scale").getContext("2d");
-  if (!context) return;
-  for (let x = 0; x < 256; ++x) {
-    const [r, g, b] = colourOf(palette, x / 127.5 - 1).map(share => Math.round(255 * share));
-    context.fillStyle = `rgb(${r}, ${g}, ${b})`;
-    context.fillRect(x, 0, 1, 1);
-  }
+  showLegend(share => colourOf(palette, 2 * share - 1), `${field} ≤ ${low}`, "0", `≥ ${high}`,
+    `${field} from ${low} over 0 in the middle to ${high}`);
 }
 
 function showField(): void {
   const field = fieldNow();
-  showLegend(field);
   if (!field) {
+    element("legend").hidden = true;
     view?.setColours(undefined);
     return;
   }
   const palette = element<HTMLSelectElement>("palette").value as Palette;
+  showScale(field, palette);
   const limit = levelNow().limits[field] || 1;
   const values = fields[field];
   view?.setColours(v => Number.isNaN(values[v]) ? undefined : colourOf(palette, values[v] / limit));
 }
 
-/// Returns the segments of polylines, two points for each.
-function segmentsOf(points: Float32Array, offsets: Uint32Array): Float32Array {
+/// Returns the segments of polylines, two points for each. Dashed lines lack every other pair of them.
+function segmentsOf(points: Float32Array, offsets: Uint32Array, dashed: boolean): Float32Array {
   const result: number[] = [];
   for (let line = 0; line + 1 < offsets.length; ++line)
-    for (let p = offsets[line]; p + 1 < offsets[line + 1]; ++p) result.push(...points.subarray(3 * p, 3 * p + 6));
+    for (let p = offsets[line]; p + 1 < offsets[line + 1]; ++p)
+      if (!dashed || (p & 3) < 2) result.push(...points.subarray(3 * p, 3 * p + 6));
   return Float32Array.from(result);
 }
 
@@ -136,12 +133,13 @@ function showMarks(): void {
   const level = levelNow();
   for (const kind of featureKinds) {
     const shown = checked(`feature-${kind.name}`);
-    view.setPoints(`feature ${kind.name}`, shown ? pointsOf(level.features[kind.name].points) : undefined, kind.colour);
+    view.setPoints(`feature ${kind.name}`, shown ? pointsOf(level.features[kind.name].points) : undefined, kind.colour,
+      kind.form);
   }
   for (const kind of contourKinds) {
     const contours = level.contours[kind.name];
     const lines = checked(`contour-${kind.name}`)
-      ? segmentsOf(pointsOf(contours.points), integers(contours.offsets)) : undefined;
+      ? segmentsOf(pointsOf(contours.points), integers(contours.offsets), kind.name === "mean") : undefined;
     view.setLines(`contour ${kind.name}`, lines, kind.colour);
   }
   view.setWireframe(checked("wireframe"), "#222222");
@@ -151,7 +149,7 @@ function showMarks(): void {
   completeness.forEach((share, v) => {
     if (share === 0) invalid.push(...points.subarray(3 * v, 3 * v + 3));
   });
-  view.setPoints("invalid", checked("invalid") ? Float32Array.from(invalid) : undefined, "#e6007e", 5);
+  view.setPoints("invalid", checked("invalid") ? Float32Array.from(invalid) : undefined, "#e6007e", "cross", 8);
 }
 
 function showLevelText(): void {
@@ -181,14 +179,49 @@ function showLevel(): void {
   showLevelText();
   showField();
   showMarks();
+  showHistograms();
+}
+
+/// Shows how many vertices of the level have which curvature.
+function showHistograms(): void {
+  const level = levelNow();
+  element("histogram-title").textContent = `Distribution of curvature on level ${level.level}`;
+  element("histograms").replaceChildren(...(["H", "K"] as const).map(field => {
+    const counts = level.histograms[field];
+    const limit = level.limits[field] || 1;
+    const most = Math.max(...counts, 1);
+    const sentence = `Number of vertices by ${field}, from ${curvatureText(field, -limit)} to ` +
+      `${curvatureText(field, limit)}; ${wholeText(most)} in the highest of ${counts.length} bars`;
+    return barChart({
+      sentence,
+      x: { title: field === "H" ? "H, mean curvature" : "K, Gaussian curvature", low: -limit, high: limit,
+        text: value => curvatureText(field, value) },
+      y: { title: "vertices", low: 0, high: most, text: value => wholeText(Math.round(value)) },
+    }, counts);
+  }));
+}
+
+/// Shows the number of features of each level over its sigma, with the level of recognition.
+function showCurve(): void {
+  const counts = scan.feature_counts;
+  const most = Math.max(...counts, 1);
+  const chosen = `level ${scan.level}, ${wholeText(counts[scan.level])} features`;
+  element("curve").append(lineChart({
+    sentence: `Number of features by sigma: ${wholeText(counts[0])} on level 0, ${wholeText(counts[counts.length - 1])} ` +
+      `on level ${counts.length - 1}. Recognised at ${chosen}.`,
+    x: { title: `sigma${unit ? `, ${unit}` : ""}`, low: scan.scales[0], high: scan.scales[counts.length - 1],
+      text: value => realText(value, 3) },
+    y: { title: "features", low: 0, high: most, text: value => wholeText(Math.round(value)) },
+  }, counts.map((y, k) => ({ x: scan.scales[k], y })), { place: scan.level, text: `★ ${chosen}` }));
 }
 
 /// Names the values of a vertex below the view.
-function probe(vertex: number | undefined): void {
-  if (vertex === undefined) {
+function probe(hit: Hit | undefined): void {
+  if (!hit) {
     element("probe").textContent = "Point at the surface to read its values.";
     return;
   }
+  const vertex = hit.vertex;
   const K = fields.K[vertex];
   const H = fields.H[vertex];
   const parts = [`vertex ${wholeText(rows ? rows[vertex] : vertex)} of level ${levelNow().level}`];
@@ -210,67 +243,13 @@ function addChoices(kinds: Kind[], group: string, into: string): void {
     box.type = "checkbox";
     box.id = `${group}-${kind.name}`;
     box.addEventListener("change", showMarks);
-    const mark = make("span", kind.title.slice(0, 1), "mark");
+    const mark = make("span", kind.mark, "mark");
     mark.style.color = kind.colour;
     mark.setAttribute("aria-hidden", "true");
     const count = make("span");
     count.id = `count-${group}-${kind.name}`;
-    label.append(box, " ", mark, kind.title.slice(1), count);
+    label.append(box, " ", mark, ` ${kind.title}`, count);
     element(into).append(label);
-  }
-}
-
-function addKeys(canvas: HTMLCanvasElement, drawn: SurfaceView): void {
-  const step = Math.PI / 18;
-  const keys: Record<string, () => void> = {
-    ArrowLeft: () => drawn.turn(-step, 0, 1),
-    ArrowRight: () => drawn.turn(step, 0, 1),
-    ArrowUp: () => drawn.turn(0, -step, 1),
-    ArrowDown: () => drawn.turn(0, step, 1),
-    "+": () => drawn.turn(0, 0, 0.9),
-    "-": () => drawn.turn(0, 0, 1 / 0.9),
-    "0": () => drawn.reset(),
-    Enter: () => probe(drawn.vertexAt()),
-  };
-  canvas.addEventListener("keydown", event => {
-    const action = keys[event.key];
-    if (!action || event.ctrlKey || event.metaKey || event.altKey) return;
-    event.preventDefault();
-    action();
-  });
-}
-
-function startView(): void {
-  const canvas = element<HTMLCanvasElement>("canvas");
-  try {
-    view = new SurfaceView(canvas);
-  } catch {
-    canvas.hidden = true;
-    element("no-view").hidden = false;
-    return;
-  }
-  const drawn = view;
-  addKeys(canvas, drawn);
-  element("reset").addEventListener("click", () => drawn.reset());
-  canvas.addEventListener("pointermove", event => {
-    if (event.buttons === 0) probe(drawn.vertexAt({ x: event.clientX, y: event.clientY }));
-  });
-  canvas.addEventListener("click", event => probe(drawn.vertexAt({ x: event.clientX, y: event.clientY })));
-}
-
-function valueText(value: unknown): string {
-  if (Array.isArray(value)) return value.map(valueText).join(", ");
-  if (value !== null && typeof value === "object")
-    return Object.entries(value).map(([name, one]) => `${name} ${valueText(one)}`).join(", ");
-  return String(value);
-}
-
-function showPairs(id: string, pairs: [string, string][]): void {
-  const list = element(id);
-  for (const [name, value] of pairs) {
-    const text = make("dd", value);
-    text.dir = "auto";
-    list.append(make("dt", name), text);
   }
 }
 
@@ -292,26 +271,28 @@ function showData(): void {
   showPairs("parameters", Object.entries(scan.parameters).map(([name, value]) => [name, valueText(value)]));
   element("python").textContent = "import h5py\n" + `file = h5py.File(${pythonText(`scans/${scan.file}`)})\n` +
     `H = file["levels/${String(scan.level).padStart(3, "0")}/mean_curvature"][:]\n`;
+  if (unit) element("sigma-title").textContent = `Sigma, ${unit}`;
   for (const level of scan.levels) {
     const row = make("tr");
     const name = level.level === scan.level ? `${level.level} ★` : String(level.level);
-    const cells = [name, lengthText(level.scale), wholeText(level.vertices), wholeText(level.parts),
+    const cells = [name, realText(level.scale), wholeText(level.vertices), wholeText(level.parts),
       wholeText(scan.feature_counts[level.level])];
     row.append(...cells.map(text => make("td", text, "number")));
     element("levels").append(row);
   }
+  const shown = scan.levels.length;
+  element("levels-note").textContent = "★ level at which the scan is recognised." +
+    (shown < scan.level_count ? ` ${shown} of ${scan.level_count} levels are shown.` : "");
 }
 
 showData();
+showCurve();
 addChoices(featureKinds, "feature", "features");
 addChoices(contourKinds, "contour", "contours");
-startView();
 slider.max = String(scan.levels.length - 1);
 slider.value = String(Math.max(0, scan.levels.findIndex(level => level.level === scan.level)));
 showLevel();
-addThemeSwitch(() => view?.setBackground(getComputedStyle(element("canvas")).backgroundColor));
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () =>
-  view?.setBackground(getComputedStyle(element("canvas")).backgroundColor));
+addThemeSwitch(() => matchBackground(view));
 slider.addEventListener("input", showLevel);
 for (const input of document.querySelectorAll("input[name=field]")) input.addEventListener("change", showField);
 element("palette").addEventListener("change", showField);

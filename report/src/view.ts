@@ -1,7 +1,7 @@
 // The surface of one level in 3-D, with what is marked on it.
 
 import {
-  AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, LineBasicMaterial, LineSegments,
+  AmbientLight, BufferAttribute, BufferGeometry, CanvasTexture, Color, DirectionalLight, DoubleSide, LineBasicMaterial, LineSegments,
   Mesh, MeshLambertMaterial, Object3D, PerspectiveCamera, Points, PointsMaterial, Raycaster, Scene, SRGBColorSpace,
   Vector2, Vector3, WebGLRenderer, WireframeGeometry,
 } from "three";
@@ -12,6 +12,43 @@ import { type Colour, invalidColour, plainColour } from "./colours";
 export interface Drawing {
   points: Float32Array;
   triangles: Uint16Array;
+}
+
+/// What a ray of the view meets first: a vertex of the surface, or of the shape of this name.
+export interface Hit {
+  shape?: string;
+  vertex: number;
+}
+
+/// The form of a mark of points. Forms tell kinds apart without colours.
+export type Form = "circle" | "square" | "triangle" | "diamond" | "cross";
+
+const outlines: Record<Exclude<Form, "circle">, [number, number][]> = {
+  square: [[6, 6], [26, 6], [26, 26], [6, 26]],
+  triangle: [[16, 3], [29, 27], [3, 27]],
+  diamond: [[16, 1], [31, 16], [16, 31], [1, 16]],
+  cross: [[2, 8], [8, 2], [16, 10], [24, 2], [30, 8], [22, 16], [30, 24], [24, 30], [16, 22], [8, 30], [2, 24], [10, 16]],
+};
+
+/// Returns the picture of a mark: its form in its colour, with a white rim.
+function pictureOf(form: Form, colour: string): CanvasTexture {
+  const canvas = document.createElement("canvas");
+  canvas.width = canvas.height = 32;
+  const context = canvas.getContext("2d");
+  if (context) {
+    context.beginPath();
+    if (form === "circle") context.arc(16, 16, 12, 0, 2 * Math.PI);
+    else for (const [x, y] of outlines[form]) context.lineTo(x, y);
+    context.closePath();
+    context.fillStyle = colour;
+    context.fill();
+    context.lineWidth = 3;
+    context.strokeStyle = "#ffffff";
+    context.stroke();
+  }
+  const texture = new CanvasTexture(canvas);
+  texture.colorSpace = SRGBColorSpace;
+  return texture;
 }
 
 const fieldOfView = 35;
@@ -120,9 +157,39 @@ export class SurfaceView {
     this.request();
   }
 
-  setPoints(name: string, points: Float32Array | undefined, colour: string, size = 7): void {
-    const material = new PointsMaterial({ color: colour, size, sizeAttenuation: false });
-    this.setMark(name, points && new Points(geometryOf(points), material));
+  setPoints(name: string, points: Float32Array | undefined, colour: string, form: Form, size = 11): void {
+    if (!points) {
+      this.setMark(name, undefined);
+      return;
+    }
+    const map = pictureOf(form, colour);
+    const material = new PointsMaterial({
+      map, size: size * this.renderer.getPixelRatio(), sizeAttenuation: false, alphaTest: 0.4,
+    });
+    this.setMark(name, new Points(geometryOf(points), material));
+  }
+
+  /// Shows another surface together with the first one.
+  setShape(name: string, drawing: Drawing | undefined, colour: string, opacity: number, edges: boolean): void {
+    if (!drawing || opacity <= 0) {
+      this.setMark(name, undefined);
+      return;
+    }
+    const geometry = geometryOf(drawing.points);
+    geometry.setIndex(new BufferAttribute(drawing.triangles, 1));
+    geometry.computeVertexNormals();
+    const material = new MeshLambertMaterial({
+      color: colour, side: DoubleSide, transparent: opacity < 1, opacity, wireframe: edges,
+    });
+    const shape = new Mesh(geometry, material);
+    shape.name = name;
+    this.setMark(name, shape);
+  }
+
+  /// Shows or hides the first surface.
+  showSurface(shown: boolean): void {
+    if (this.mesh) this.mesh.visible = shown;
+    this.request();
   }
 
   setLines(name: string, points: Float32Array | undefined, colour: string): void {
@@ -151,22 +218,22 @@ export class SurfaceView {
     this.request();
   }
 
-  /// Returns the vertex nearest to where a ray through a place of the canvas meets the surface.
+  /// Returns the vertex nearest to where a ray through a place of the canvas meets a surface first.
   /// The place is in pixels of the page; without one it is the middle.
-  vertexAt(place?: { x: number; y: number }): number | undefined {
-    if (!this.mesh || !this.drawing) return undefined;
+  hitAt(place?: { x: number; y: number }): Hit | undefined {
     const box = this.canvas.getBoundingClientRect();
     const ndc = place
       ? new Vector2((place.x - box.left) / box.width * 2 - 1, 1 - (place.y - box.top) / box.height * 2)
       : new Vector2(0, 0);
     const ray = new Raycaster();
     ray.setFromCamera(ndc, this.camera);
-    const hit = ray.intersectObject(this.mesh)[0];
+    const surfaces = [this.mesh, ...this.marks.values()].filter(one => one instanceof Mesh && one.visible);
+    const hit = ray.intersectObjects(surfaces as Object3D[], false)[0];
     if (!hit?.face) return undefined;
-    const points = this.drawing.points;
-    const distanceTo = (v: number): number =>
-      hit.point.distanceTo(new Vector3(points[3 * v], points[3 * v + 1], points[3 * v + 2]));
-    return [hit.face.a, hit.face.b, hit.face.c].sort((a, b) => distanceTo(a) - distanceTo(b))[0];
+    const points = (hit.object as Mesh<BufferGeometry>).geometry.getAttribute("position");
+    const distanceTo = (v: number): number => hit.point.distanceTo(new Vector3().fromBufferAttribute(points, v));
+    const vertex = [hit.face.a, hit.face.b, hit.face.c].sort((a, b) => distanceTo(a) - distanceTo(b))[0];
+    return { shape: hit.object === this.mesh ? undefined : hit.object.name, vertex };
   }
 
   private setMark(name: string, mark: Object3D | undefined): void {
@@ -184,7 +251,10 @@ export class SurfaceView {
     this.scene.remove(object);
     const { geometry, material } = object as Mesh;
     geometry.dispose();
-    for (const one of Array.isArray(material) ? material : [material]) one.dispose();
+    for (const one of Array.isArray(material) ? material : [material]) {
+      (one as PointsMaterial).map?.dispose();
+      one.dispose();
+    }
   }
 
   private resize(): void {

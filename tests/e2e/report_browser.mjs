@@ -17,10 +17,61 @@ const sortBy = (page, title) => page.click(`#columns button:has-text("${title}")
 
 const states = page => page.$$eval("#rows tr:not([hidden]) .state", cells => cells.map(cell => cell.textContent));
 
+/// Fails if the page is wider than its window, or if a control has no name for screen readers.
+async function isUsable(page) {
+  for (const width of [390, 1280, 2560]) {
+    await page.setViewportSize({ width, height: 500 });
+    const excess = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+    assert.equal(excess, 0, `at ${width} pixels the page is ${excess} pixels too wide`);
+  }
+  await page.setViewportSize({ width: 1280, height: 900 });
+  const nameless = await page.$$eval("input, select, button, a[href], canvas[tabindex]", controls => controls
+    .filter(one => !one.hidden && !(one.labels?.length || one.getAttribute("aria-label") || one.textContent.trim()))
+    .map(one => one.outerHTML));
+  assert.deepEqual(nameless, []);
+  for (const landmark of ["header", "main", "h1"]) assert.equal(await page.locator(landmark).count(), 1, landmark);
+  assert.deepEqual(await page.$$eval("section", all => all
+    .filter(one => !one.getAttribute("aria-label") && !one.getAttribute("aria-labelledby")).map(one => one.outerHTML)), []);
+  // What has the focus is seen to have it.
+  await page.evaluate(() => document.activeElement?.blur());
+  await page.keyboard.press("Tab");
+  await page.keyboard.press("Tab");
+  assert.equal(await page.evaluate(() => getComputedStyle(document.activeElement).outlineStyle), "solid");
+}
+
+/// Keeps the pixels of the view, when what was asked for is drawn, and returns the share of them that
+/// differ from those that were kept before, or, the first time, from the first pixel.
+const shareOfNewPixels = page => page.evaluate(async () => {
+  await new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)));
+  const from = document.getElementById("canvas");
+  const to = Object.assign(document.createElement("canvas"), { width: 240, height: 160 });
+  const context = to.getContext("2d");
+  context.drawImage(from, 0, 0, 240, 160);
+  const now = context.getImageData(0, 0, 240, 160).data;
+  const before = window.keptPixels ?? now.map((_, i) => now[i % 4]);
+  window.keptPixels = now;
+  let count = 0;
+  for (let i = 0; i < now.length; i += 4)
+    if ([0, 1, 2].some(c => Math.abs(now[i + c] - before[i + c]) > 10)) ++count;
+  return count / (now.length / 4);
+});
+
+/// Fails unless something is drawn on the background.
+async function isDrawn(page) {
+  assert.ok(await shareOfNewPixels(page) > 0.05, "nothing is drawn");
+}
+
+/// Does something to the page, and expects other pixels.
+async function changes(page, what, action) {
+  await shareOfNewPixels(page);
+  await action();
+  assert.ok(await shareOfNewPixels(page) > 0.0003, `${what} changes nothing`);
+}
+
 const checks = {
   /// A small archive: INDEX and, as JSON, the names and failures that it must show.
   async index(page, wanted) {
-    const { title, names: all, failed, reason, remedy } = JSON.parse(wanted);
+    const { title, names: all, failed, reason, remedy, scenes } = JSON.parse(wanted);
     assert.equal(await page.getAttribute("html", "lang"), "en");
     assert.equal(await page.textContent("h1"), title);
     assert.deepEqual([...(await names(page))].sort(), [...all].sort());
@@ -33,17 +84,23 @@ const checks = {
     assert.ok(failure.includes(`What to do: ${remedy}`), failure);
 
     await sortBy(page, "Vertices");
-    const vertices = () => page.$$eval("#rows tr td:nth-child(4)", cells =>
+    const vertices = () => page.$$eval("#rows tr td:nth-child(5)", cells =>
       cells.map(cell => Number(cell.textContent.replace(/,/g, ""))).filter(Number.isFinite));
     const ascending = await vertices();
     assert.ok(ascending.length > 1);
     assert.deepEqual(ascending, [...ascending].sort((a, b) => a - b));
-    assert.equal(await page.getAttribute("#columns th:nth-child(4)", "aria-sort"), "ascending");
+    assert.equal(await page.getAttribute("#columns th:nth-child(5)", "aria-sort"), "ascending");
     await sortBy(page, "Vertices");
     assert.deepEqual(await vertices(), [...ascending].reverse());
-    assert.equal(await page.getAttribute("#columns th:nth-child(4)", "aria-sort"), "descending");
+    assert.equal(await page.getAttribute("#columns th:nth-child(5)", "aria-sort"), "descending");
 
-    // By keyboard alone: '/' leads to the search.
+    // By keyboard alone: a head sorts, '/' leads to the search.
+    await page.focus("#columns th:nth-child(2) button");
+    await page.keyboard.press("Enter");
+    assert.equal(await page.getAttribute("#columns th:nth-child(2)", "aria-sort"), "ascending");
+    const sorted = await names(page);
+    await page.keyboard.press("Enter");
+    assert.deepEqual(await names(page), sorted.reverse());
     await page.keyboard.press("/");
     await page.keyboard.type("boul");
     assert.deepEqual(await names(page), all.filter(name => name.includes("boul")));
@@ -57,6 +114,25 @@ const checks = {
 
     // Each scan with a dataset leads to its page.
     assert.equal(await page.locator("#rows a").count(), all.length - 1);
+    // And has a picture, in which something is drawn.
+    const sizes = await page.$$eval("#rows img", images => Promise.all(images.map(async image => {
+      await image.decode();
+      return image.naturalWidth;
+    })));
+    assert.deepEqual(sizes, Array(all.length - 1).fill(64));
+
+    // Recognised scenes lead to their pages, too.
+    assert.deepEqual(await page.$$eval("#scene-rows th", cells => cells.map(cell => cell.textContent)), scenes);
+    assert.equal(await page.locator("#scene-rows a").count(), scenes.length);
+    assert.match(await page.textContent("#passed-over"), /1 \.txt/);
+
+    // A narrow page has no heads; a list and a button sort.
+    await page.setViewportSize({ width: 390, height: 844 });
+    await page.selectOption("#sort", { label: "Name" });
+    assert.deepEqual(await names(page), sorted.reverse());
+    await page.click("#direction");
+    assert.deepEqual(await names(page), sorted.reverse());
+    await isUsable(page);
 
     // Colours: the system's, and the reader's own choice.
     const background = () => page.$eval("body", body => getComputedStyle(body).backgroundColor);
@@ -73,32 +149,7 @@ const checks = {
   async scan(page, wanted) {
     const { title } = JSON.parse(wanted);
     assert.equal(await page.textContent("h1"), title);
-    const pixels = () => page.evaluate(async () => {
-      await new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)));
-      const from = document.getElementById("canvas");
-      const to = Object.assign(document.createElement("canvas"), { width: 480, height: 320 });
-      const context = to.getContext("2d");
-      context.drawImage(from, 0, 0, 480, 320);
-      return [...context.getImageData(0, 0, 480, 320).data];
-    });
-    /// The share of pixels that differ.
-    const difference = (a, b) => {
-      let count = 0;
-      for (let i = 0; i < a.length; i += 4)
-        if ([0, 1, 2].some(c => Math.abs(a[i + c] - b[i + c]) > 12)) ++count;
-      return count / (a.length / 4);
-    };
-    const first = await pixels();
-    const corner = first.slice(0, 4);
-    const background = first.map((_, i) => corner[i % 4]);
-    assert.ok(difference(first, background) > 0.1, "nothing is drawn");
-
-    /// Does something to the page, and expects other pixels.
-    const changes = async (what, action) => {
-      const before = await pixels();
-      await action();
-      assert.ok(difference(before, await pixels()) > 0.0005, `${what} changes nothing`);
-    };
+    await isDrawn(page);
     const setLevel = level => page.$eval("#level", (slider, value) => {
       slider.value = value;
       slider.dispatchEvent(new Event("input"));
@@ -108,16 +159,16 @@ const checks = {
     await setLevel(0);
     const sigma = await page.textContent("#level-text");
     assert.match(sigma, /^0 of \d+, sigma [\d.e+-]+ mm/);
-    await changes("the slider", () => setLevel(last));
+    await changes(page, "the slider", () => setLevel(last));
     assert.notEqual(await page.textContent("#level-text"), sigma);
-    await changes("the level back", () => setLevel(0));
-    await changes("K", () => page.check("input[name=field][value=K]"));
+    await changes(page, "the level back", () => setLevel(0));
+    await changes(page, "K", () => page.check("input[name=field][value=K]"));
     assert.match(await page.textContent("#high"), /mm²/);
-    await changes("the palette", () => page.selectOption("#palette", "thesis"));
-    await changes("no field", () => page.check("input[name=field][value=none]"));
+    await changes(page, "the palette", () => page.selectOption("#palette", "thesis"));
+    await changes(page, "no field", () => page.check("input[name=field][value=none]"));
     for (const box of ["feature-mean", "contour-mean", "contour-gaussian", "wireframe", "rims"]) {
-      await changes(`${box} on`, () => page.check(`#${box}`));
-      await changes(`${box} off`, () => page.uncheck(`#${box}`));
+      await changes(page, `${box} on`, () => page.check(`#${box}`));
+      await changes(page, `${box} off`, () => page.uncheck(`#${box}`));
     }
 
     // What is under the cursor, by mouse and by keyboard.
@@ -129,9 +180,69 @@ const checks = {
     await page.focus("#canvas");
     await page.keyboard.press("Enter");
     assert.match(await page.textContent("#probe"), /^vertex/);
-    await changes("the keyboard", () => page.keyboard.press("ArrowLeft"));
+    await changes(page, "the keyboard", () => page.keyboard.press("ArrowLeft"));
     assert.match(await page.textContent("#python"), /^import h5py\n/);
+
+    // Charts say in words what they show.
+    assert.match(await page.getAttribute("#curve svg", "aria-label"), /Recognised at level \d/);
+    assert.equal(await page.locator("#histograms svg").count(), 2);
+    const histogram = await page.innerHTML("#histograms");
+    await setLevel(last);
+    assert.notEqual(await page.innerHTML("#histograms"), histogram);
+    assert.equal(await page.locator("#levels td", { hasText: "★" }).count(), 1);
+    await isUsable(page);
     console.log(await page.textContent("#python"));
+  },
+
+  /// The page of a scene: PAGE and, as JSON, its title, the models that were found, and the first matrix.
+  async scene(page, wanted) {
+    const { title, models, matrix } = JSON.parse(wanted);
+    assert.equal(await page.textContent("h1"), title);
+    assert.deepEqual(await page.$$eval("#shapes bdi", all => all.map(one => one.textContent)), models);
+    assert.deepEqual(await page.$$eval("#object-list h3 bdi", all => all.map(one => one.textContent)), models);
+    await isDrawn(page);
+    for (const place of models.keys()) {
+      await changes(page, `model ${place} off`, () => page.uncheck(`#object-${place}`));
+      await changes(page, `model ${place} on`, () => page.check(`#object-${place}`));
+    }
+    await changes(page, "edges", () => page.check("#edges"));
+    await page.uncheck("#edges");
+    const setOpacity = value => page.$eval("#opacity", (slider, to) => {
+      slider.value = to;
+      slider.dispatchEvent(new Event("input"));
+    }, String(value));
+    await changes(page, "no models", () => setOpacity(0));
+    // Without the models the scene shows how far it is from them.
+    await changes(page, "a plain scene", () => page.check("input[name=scene][value=plain]"));
+    await changes(page, "no scene", () => page.check("input[name=scene][value=hidden]"));
+    await changes(page, "distances", () => page.check("input[name=scene][value=distance]"));
+    await changes(page, "the distance from fewer models", () => page.uncheck("#object-0"));
+    await page.check("#object-0");
+    await page.focus("#canvas");
+    await changes(page, "the keyboard", () => page.keyboard.press("ArrowLeft"));
+
+    const status = () => page.textContent("#copied");
+    for (const [place, kind] of ["text", "JSON"].entries()) {
+      const button = page.locator("#object-list article").first().locator("button").nth(place);
+      assert.equal(await button.textContent(), `Copy as ${kind}`);
+      await page.$eval("#copied", said => said.replaceChildren());
+      await button.click();
+      await page.waitForFunction(() => document.getElementById("copied").textContent.startsWith("Copied: "));
+      const text = await page.evaluate(() => new Promise(done => {
+        const field = document.body.appendChild(document.createElement("textarea"));
+        field.id = "pasted";
+        field.addEventListener("input", () => done(field.value));
+        field.focus();
+        document.execCommand("paste") || done(undefined);
+      })) ?? await button.getAttribute("data-text");
+      await page.$eval("#pasted", field => field.remove());
+      const rows = kind === "JSON" ? JSON.parse(text) : text.split("\n").map(row => row.split(" ").map(Number));
+      assert.deepEqual(rows, matrix);
+    }
+    assert.match(await status(), /as JSON/);
+    const ranked = await page.$$eval("#ranking th", cells => cells.map(cell => cell.textContent));
+    for (const model of models) assert.ok(ranked.includes(`${model} ★`), ranked.join());
+    await isUsable(page);
   },
 
   /// Many scans: INDEX and their number.

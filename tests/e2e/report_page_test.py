@@ -15,7 +15,7 @@ del sys.argv[2:5]
 
 import numpy as np  # noqa: E402
 
-from support import SemigeoTest, boulder, icosphere, write_ply  # noqa: E402
+from support import SemigeoTest, boulder, icosphere, joined, write_ply  # noqa: E402
 
 HERE = Path(__file__).resolve().parent
 IMAGE = "<img src=x onerror=alert(1)>.ply"
@@ -33,6 +33,12 @@ class NoReportTest(SemigeoTest):
         process = self.semigeo("report", self.folder, code=2)
         self.assertIn("this program has no report: ", process.stderr)
         self.assertIn("install node and npm", process.stderr)
+
+
+def page_data(path):
+    """The document in a page."""
+    text = path.read_text()
+    return json.loads(text.split('<script type="application/json" id="data">')[1].split("</script>")[0])
 
 
 @unittest.skipUnless(HAS_REPORT, "this program has no report")
@@ -55,6 +61,7 @@ class ReportTest(SemigeoTest):
         write_ply(self.scans / SCRIPT, icosphere(3))
         write_ply(self.scans / GREEK, icosphere(2))
         (self.scans / "<b>broken.ply").write_bytes(b"ply\nformat ascii 1.0\nelement vertex 3\n")
+        (self.scans / "readme.txt").write_text("no scan")
         self.run_scans("--levels", 2, "--unit", "mm", code=1)
 
     def test_the_index_sorts_filters_lists_failures_and_runs_nothing(self):
@@ -66,7 +73,92 @@ class ReportTest(SemigeoTest):
         reason, remedy = next(iter(failed.values())).rsplit("; ", 1)
         self.browse("index", index, json.dumps({
             "title": "archive", "names": ["boulder.ply", IMAGE, SCRIPT, GREEK, "<b>broken.ply"],
-            "failed": "<b>broken.ply", "reason": reason, "remedy": remedy}))
+            "failed": "<b>broken.ply", "reason": reason, "remedy": remedy, "scenes": []}))
+
+    def make_scene(self):
+        """Two models with hostile names in a scene with another one."""
+        write_ply(self.scans / IMAGE, boulder(4, 1))
+        write_ply(self.scans / SCRIPT, boulder(4, 2))
+        self.run_scans("--levels", 2, "--library")
+        (first, faces), (second, _) = boulder(4, 1), boulder(4, 2)
+        turned = second @ np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1.0]]).T * 1.5 + [4, 0, 0]
+        scene = write_ply(self.folder / "scenes" / IMAGE, joined((first, faces), (turned, faces)))
+        self.semigeo("recognise", scene, "--library", self.archive, "--output", self.archive)
+        recognised, = (path for path in (self.archive / "recognised").iterdir() if path.name != "sources.json")
+        return json.loads(recognised.read_text())
+
+    def test_a_recognised_scene_has_a_page(self):
+        found = self.make_scene()
+        told = self.report()
+        self.assertEqual((told["pages_made"], told["pages_failed"]), (3, 0))
+        page, = (self.archive / "report/scenes").iterdir()
+        self.assertLess(page.stat().st_size, 6e6)
+        data = page_data(page)
+        self.assertEqual(len(data["objects"]), 2)
+        for found_object in data["objects"]:
+            # The scene is made of the models: they lie on it, up to the precision of the poses.
+            self.assertLess(found_object["residual"]["median"], 0.01)
+            self.assertAlmostEqual(found_object["residual"]["share"], 0.5, delta=0.05)
+        titles = [data["titles"][one["model"]] for one in data["objects"]]
+        self.assertEqual(sorted(titles), sorted([IMAGE, SCRIPT]))
+        self.browse("scene", page, json.dumps({"title": IMAGE, "models": titles,
+                                               "matrix": found["objects"][0]["pose"]["matrix"]}))
+        index = page_data(Path(told["report"]))
+        self.assertEqual([scene["title"] for scene in index["scenes"]], [IMAGE])
+        # What is gone is named on the page, and the rest of it is there.
+        shutil.rmtree(self.folder / "scenes")
+        self.dataset(data["objects"][0]["model"]).unlink()
+        self.assertEqual(self.report()["pages_failed"], 0)
+        data = page_data(page)
+        self.assertIn("missing", data["surface"])
+        self.assertEqual(sum("missing" in model for model in data["models"]), 1)
+        self.assertEqual(len(data["objects"]), 2)
+
+    def test_a_run_makes_the_report_with_its_datasets(self):
+        write_ply(self.scans / "a.ply", boulder(2, 1))
+        write_ply(self.scans / "b.ply", boulder(2, 2))
+        run = ("run", self.scans, "--output", self.archive, "--levels", 1, "--report")
+        graph = json.loads(self.semigeo(*run, "--dag", "json").stdout)["nodes"]
+        jobs = [node["id"] for node in graph if "state" in node and node["state"] == "would run"]
+        self.assertEqual(jobs, ["surface a.ply", "surface b.ply", "page a.ply", "page b.ply", "report index.html"])
+        self.assertFalse(self.archive.exists())
+        said = self.semigeo(*run).stdout
+        self.assertIn(f"report: {self.archive}/report/index.html\n", said)
+        self.assertEqual([scan["state"] for scan in page_data(self.archive / "report/index.html")["scans"]],
+                         ["done", "done"])
+        self.assertIn("5 up to date", self.semigeo(*run).stdout)
+        # The command agrees with the run.
+        told = self.report()
+        self.assertEqual((told["pages_made"], told["pages_up_to_date"], told["scans"]), (0, 2, 2))
+        self.assertIn("would run", self.semigeo("report", self.archive, "--output", self.folder / "x", "--dry-run").stdout)
+        write_ply(self.scans / "b.ply", boulder(3, 2))
+        dry = json.loads(self.semigeo(*run, "--dry-run", "--json").stdout)
+        self.assertEqual({job["name"]: job["state"] for job in dry["jobs"]},
+                         {"a.ply": "up to date", "b.ply": "would run", "index.html": "would run"})
+        self.semigeo(*run)
+        self.assertEqual(self.report()["pages_made"], 0)
+
+    def test_one_scan_harms_no_other_page(self):
+        for name in "abc":
+            write_ply(self.scans / f"{name}.ply", boulder(3, ord(name)))
+        self.run_scans("--levels", 1)
+        with open(self.dataset("b.ply"), "r+b") as file:  # damage behind the header
+            file.seek(self.dataset("b.ply").stat().st_size // 2)
+            file.write(b"\xff" * 4096)
+        process = self.semigeo("report", self.archive, "--json", code=1)
+        told = json.loads(process.stdout)
+        self.assertEqual((told["pages_made"], told["pages_failed"], told["scans"]), (2, 1, 3))
+        scans = page_data(Path(told["report"]))["scans"]
+        self.assertEqual(sorted(scan["name"] for scan in scans if "page" in scan), ["a.ply", "c.ply"])
+
+    def test_a_report_is_made_while_a_run_has_the_archive(self):
+        write_ply(self.scans / "a.ply", boulder(2, 1))
+        self.run_scans("--levels", 1)
+        before = (self.archive / "journal.jsonl").read_bytes()
+        (self.archive / "lock").write_text(json.dumps({"host": "elsewhere", "pid": 1, "boot_id": "x",
+                                                       "process_started": 1, "since": "2024-05-31T21:00:00Z"}))
+        self.assertEqual(self.report()["pages_made"], 1)
+        self.assertEqual((self.archive / "journal.jsonl").read_bytes(), before)
 
     def test_the_same_archive_gives_the_same_page_elsewhere(self):
         self.make_archive()

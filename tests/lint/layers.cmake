@@ -26,11 +26,11 @@ set(rules
   "jobs/archive: engine kernels io"
   "jobs/stages: engine kernels io"
   "jobs/picture: engine kernels io"
-  "jobs/report: engine kernels io jobs/archive jobs/picture"
+  "jobs/report: engine kernels io jobs/archive jobs/picture jobs/stages"
   "jobs/plan: engine kernels io jobs/archive"
   "jobs/run: engine kernels io jobs/archive jobs/plan"
   "jobs/slurm: engine kernels io jobs/archive jobs/plan jobs/run"
-  "jobs/kinds: engine kernels io jobs/archive jobs/plan jobs/stages"
+  "jobs/kinds: engine kernels io jobs/archive jobs/plan jobs/stages jobs/report"
   "jobs/bench: engine kernels io jobs/archive jobs/plan jobs/run jobs/stages"
   "jobs/cli: engine kernels io jobs/archive jobs/plan jobs/run jobs/slurm jobs/kinds jobs/stages jobs/bench jobs/picture jobs/report")
 

@@ -34,7 +34,7 @@ class ArchiveReportTest : public testing::Test {
     engine::Observer observer;
     run_surface_job(job, {.levels = 1}, {workers, observer, {}});
   }
-  nlohmann::json report() { return archive_report(folder_.path()); }
+  nlohmann::json report() { return archive_report(folder_.path(), folder_ / "report"); }
 
   tests::TemporaryFolder folder_;
 };
@@ -121,7 +121,7 @@ TEST_F(ArchiveReportTest, ScansHaveTheirOwnNames) {
 
 TEST_F(ArchiveReportTest, AFolderWithoutAnythingIsNoArchive) {
   EXPECT_THROW(report(), io::Error);
-  EXPECT_THROW(archive_report(folder_ / "absent"), io::Error);
+  EXPECT_THROW(archive_report(folder_ / "absent", folder_ / "report"), io::Error);
 }
 
 }  // namespace

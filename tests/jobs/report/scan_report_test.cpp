@@ -8,7 +8,6 @@
 #include <string>
 
 #include "io/files/file_digest.hpp"
-#include "jobs/report/scan_page.hpp"
 #include "jobs/stages/surface_job.hpp"
 #include "tests/support/scan_file.hpp"
 #include "tests/support/shapes.hpp"
@@ -111,14 +110,22 @@ TEST_F(ScanReportTest, OfManyLevelsSomeAreShown) {
   EXPECT_EQ(std::ranges::count(levels, document["level"].get<int>()), 1);
 }
 
-TEST_F(ScanReportTest, APageIsMadeOnceForADatasetAndAProgram) {
-  const fs::path path = make_dataset(shapes::icosphere(2));
-  const fs::path page = folder_ / "page.html";
-  EXPECT_TRUE(make_scan_page(io::Dataset(path), {"<a>", "</a>"}, page));
-  EXPECT_FALSE(make_scan_page(io::Dataset(path), {"<a>", "</a>"}, page));
-  EXPECT_TRUE(make_scan_page(io::Dataset(path), {"<b>", "</b>"}, page));
-  make_dataset(shapes::icosphere(2), 1);
-  EXPECT_TRUE(make_scan_page(io::Dataset(path), {"<b>", "</b>"}, page));
+TEST_F(ScanReportTest, EveryValidVertexIsInAHistogram) {
+  const io::Dataset dataset(make_dataset(shapes::icosphere(3)));
+  const nlohmann::json document = scan_report(dataset);
+  for (const nlohmann::json& level : document["levels"]) {
+    for (const char* field : {"K", "H"}) {
+      std::int64_t count = 0;
+      for (const std::int64_t bin : level["histograms"][field]) count += bin;
+      EXPECT_EQ(count,
+                level["vertices"].get<std::int64_t>() - level["invalid"].get<std::int64_t>());
+    }
+    // A sphere, on which H has one sign, and outwards.
+    const auto bins = level["histograms"]["H"].get<std::vector<std::int64_t>>();
+    const auto half = bins.begin() + std::ssize(bins) / 2;
+    EXPECT_EQ(std::count(half, bins.end(), 0), std::ssize(bins) / 2);
+  }
+  EXPECT_EQ(document["scales"].size(), 3);
 }
 
 }  // namespace

@@ -1,0 +1,322 @@
+#include "jobs/kinds/report.hpp"
+
+#include <fstream>
+#include <set>
+#include <system_error>
+
+#include "io/dataset/dataset.hpp"
+#include "io/files/error.hpp"
+#include "io/files/read_error.hpp"
+#include "jobs/archive/dataset_files.hpp"
+#include "jobs/archive/path_text.hpp"
+#include "jobs/kinds/dataset_estimate.hpp"
+#include "jobs/kinds/recognise_plan.hpp"
+#include "jobs/plan/plan.hpp"
+#include "jobs/plan/typed_job_kind.hpp"
+#include "jobs/report/archive_report.hpp"
+#include "jobs/report/page.hpp"
+#include "jobs/report/pages.hpp"
+#include "jobs/report/report_files.hpp"
+#include "jobs/report/scan_report.hpp"
+#include "jobs/report/scene_report.hpp"
+#include "jobs/report/thumbnail.hpp"
+#include "jobs/stages/recognised_file.hpp"
+
+namespace semigeo::jobs {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+/// What a job of the report made.
+struct PageResult {
+  std::int64_t bytes = 0;
+};
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PageResult, bytes)
+
+}  // namespace
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportJobResult, scans, failures)
+
+static void to_json(json& object, const PageJobData&) {
+  object = json::object();
+}
+static void from_json(const json&, PageJobData&) {}
+
+static void to_json(json& object, const SceneJobData& data) {
+  object = {{"scene", escaped(data.scene.string())}, {"archive", escaped(data.archive.string())}};
+}
+static void from_json(const json& object, SceneJobData& data) {
+  data.scene = unescaped(object.at("scene").get<std::string>());
+  data.archive = unescaped(object.at("archive").get<std::string>());
+}
+
+static void to_json(json& object, const ReportJobData& data) {
+  object = {{"index_only", data.index_only}};
+}
+static void from_json(const json& object, ReportJobData& data) {
+  object.at("index_only").get_to(data.index_only);
+}
+
+namespace {
+
+// The costs of a page: the program itself, reading and compressing a dataset, decimating it.
+constexpr double kBaseBytes = 80e6;
+constexpr double kBytesPerByte = 6;
+constexpr double kBaseSeconds = 0.05;
+constexpr double kSecondsPerByte = 4e-8;
+
+Estimate estimate_of_page(double bytes) {
+  return {.vertices = 0,
+          .peak_bytes = kBaseBytes + kBytesPerByte * bytes,
+          .seconds = kBaseSeconds + kSecondsPerByte * bytes};
+}
+
+double size_of(const fs::path& path) {
+  std::error_code error;
+  const auto bytes = fs::file_size(path, error);
+  return error ? 0 : static_cast<double>(bytes);
+}
+
+std::string key_of_scan_page(const std::string& dataset_key, const fs::path& dataset) {
+  return page_key(kScanPageVersion, pages().scan, dataset_key + dataset.filename().string());
+}
+
+/// What all kinds of pages share.
+template <typename Data, typename Result>
+class PageKind : public TypedJobKind<Data, Result> {
+ public:
+  explicit PageKind(JobWords words) : words_(std::move(words)) {}
+  const JobWords& words() const override { return words_; }
+  std::string read_key(const fs::path& output, KeyCheck) const override {
+    return read_page_key(output);
+  }
+
+  /// Removes the page of something that is gone.
+  void remove_stale_output(const Job& job) const override {
+    std::error_code ignored;
+    if (!fs::exists(job.input, ignored)) fs::remove(job.output, ignored);
+  }
+
+ private:
+  const JobWords words_;
+};
+
+class ScanPageKind final : public PageKind<PageJobData, PageResult> {
+ public:
+  ScanPageKind()
+      : PageKind({.kind = std::string(kPageKind),
+                  .output = "page",
+                  .inputs = "the dataset",
+                  .plural = "pages"}) {}
+
+  /// Takes the key of the dataset that is there now. Throws io::Error if there is none.
+  bool resolve_inputs(Job& job, OutputKeys&) const override {
+    job.key.clear();
+    std::error_code ignored;
+    if (!fs::exists(job.input, ignored)) throw missing_input(job.output, "dataset");
+    job.key = key_of_scan_page(io::read_origin(job.input).job_key, job.input);
+    return is_complete(job);
+  }
+
+  std::vector<ExternalFile> external_files(const PlannedJob& planned) const override {
+    if (!planned.after.empty()) return {};
+    return {{.kind = "dataset", .path = planned.job.input, .is_readable = is_readable(planned)}};
+  }
+
+  Estimate estimate(const PlannedJob& planned, const EstimateContext&) const override {
+    return estimate_of_page(size_of(planned.job.input));
+  }
+
+  std::any run(const Job& job, const JobContext&) const override {
+    const io::Dataset dataset(job.input);
+    const std::string text =
+        with_icon(page_with(pages().scan, scan_report(dataset)), thumbnail_of(dataset));
+    write_page(job.output, job.key, text);
+    return PageResult{static_cast<std::int64_t>(text.size())};
+  }
+};
+
+/// Returns the dataset of each model that was found in a scene.
+std::set<fs::path> found_models(const json& recognised, const fs::path& archive) {
+  std::set<fs::path> datasets;
+  for (const json& object : recognised.at("objects"))
+    datasets.insert(dataset_path(archive, object.at("model").get<std::string>()));
+  return datasets;
+}
+
+class ScenePageKind final : public PageKind<SceneJobData, PageResult> {
+ public:
+  ScenePageKind()
+      : PageKind({.kind = std::string(kScenePageKind),
+                  .output = "page of a scene",
+                  .inputs = "what was recognised, or a model",
+                  .plural = "pages"}) {}
+
+  bool resolve_inputs(Job& job, OutputKeys&) const override {
+    job.key.clear();
+    std::error_code ignored;
+    if (!fs::exists(job.input, ignored)) throw missing_input(job.output, "recognised file");
+    job.key = key_of(job);
+    return is_complete(job);
+  }
+
+  /// Returns the key of the page of what is there now. Throws io::Error if the recognised file
+  /// cannot be read.
+  static std::string key_of(const Job& job) {
+    const SceneJobData& scene = data(job);
+    const json recognised = read_recognised(job.input);
+    std::string content = recognised.value("job_key", "");
+    std::error_code ignored;
+    content += fs::exists(scene.scene, ignored) ? "\nscene" : "\nno scene";
+    try {
+      for (const fs::path& dataset : found_models(recognised, scene.archive))
+        content.append("\n").append(fs::exists(dataset, ignored) ? io::read_origin(dataset).job_key
+                                                                 : "none");
+    } catch (const io::Error& e) {
+      content.append("\n").append(e.what());
+    } catch (const json::exception& e) {
+      content.append("\n").append(e.what());
+    }
+    return page_key(kScenePageVersion, pages().scene, content);
+  }
+
+  std::vector<ExternalFile> external_files(const PlannedJob& planned) const override {
+    return {
+        {.kind = "recognition", .path = planned.job.input, .is_readable = is_readable(planned)}};
+  }
+
+  Estimate estimate(const PlannedJob& planned, const EstimateContext&) const override {
+    return estimate_of_page(size_of(data(planned.job).scene));
+  }
+
+  std::any run(const Job& job, const JobContext&) const override {
+    const SceneJobData& scene = data(job);
+    const std::string text = page_with(
+        pages().scene,
+        scene_report({.recognised = job.input, .scene = scene.scene, .archive = scene.archive}));
+    write_page(job.output, job.key, text);
+    return PageResult{static_cast<std::int64_t>(text.size())};
+  }
+};
+
+/// Removes pages of scans and scenes that are gone. Files that are no pages stay.
+void remove_stale_pages(const fs::path& folder, const std::set<fs::path>& wanted) {
+  std::vector<fs::path> stale;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().extension() != ".html" || wanted.contains(entry.path())) continue;
+    try {
+      read_page_key(entry.path());
+      stale.push_back(entry.path());
+    } catch (const io::Error&) {
+    }
+  }
+  for (const fs::path& path : stale) fs::remove(path, ignored);
+}
+
+class ReportKind final : public PageKind<ReportJobData, ReportJobResult> {
+ public:
+  ReportKind()
+      : PageKind({.kind = std::string(kReportKind),
+                  .output = "report",
+                  .inputs = "datasets, recognised scenes, the journal or pages",
+                  .plural = "reports",
+                  .merges_files = true}) {}
+
+  bool resolve_inputs(Job& job, OutputKeys&) const override {
+    job.key =
+        page_key(kIndexVersion, pages().index, archive_digest(job.input, job.output.parent_path()));
+    return is_complete(job);
+  }
+
+  Estimate estimate(const PlannedJob& planned, const EstimateContext& context) const override {
+    constexpr double kSecondsPerScan = 0.01;
+    return {.vertices = 0,
+            .peak_bytes = kBaseBytes,
+            .seconds = kBaseSeconds + kSecondsPerScan * static_cast<double>(context.plan.size() +
+                                                                            planned.after.size())};
+  }
+
+  std::any run(const Job& job, const JobContext&) const override {
+    remove_pages_of_what_is_gone(job);
+    json document = archive_report(job.input, job.output.parent_path());
+    document["version"] = SEMIGEO_VERSION;
+    write_page(job.output, job.key, page_with(pages().index, document));
+    return ReportJobResult{std::ssize(document["scans"]), std::ssize(document["failures"])};
+  }
+
+  std::optional<JobSummary> summary(const Job& job, JobState state) const override {
+    std::string text = "report: " + job.output.string();
+    if (!is_made(state)) text += ": " + std::string(name_of(state));
+    if (state == JobState::kUpToDate) text += ", up to date";
+    return JobSummary{
+        .text = std::move(text),
+        .fields = {{"report", {{"output", job.output.string()}, {"state", name_of(state)}}}}};
+  }
+
+ private:
+  static void remove_pages_of_what_is_gone(const Job& job) {
+    if (data(job).index_only) return;
+    const fs::path folder = job.output.parent_path();
+    std::set<fs::path> wanted;
+    for (const fs::path& dataset : dataset_files(job.input / "scans"))
+      wanted.insert(scan_page_path(folder, dataset.stem().string()));
+    for (const std::string& name : scene_names(job.input))
+      wanted.insert(scene_page_path(folder, name));
+    remove_stale_pages(folder / "scans", wanted);
+    remove_stale_pages(folder / "scenes", wanted);
+  }
+};
+
+}  // namespace
+
+const JobKind& page_kind() {
+  static const ScanPageKind kind;
+  return kind;
+}
+
+const JobKind& scene_kind() {
+  static const ScenePageKind kind;
+  return kind;
+}
+
+const JobKind& report_kind() {
+  static const ReportKind kind;
+  return kind;
+}
+
+Job page_job(const std::string& name, const fs::path& dataset, const std::string& dataset_key,
+             const fs::path& folder) {
+  return {.kind = &page_kind(),
+          .name = name,
+          .input = dataset,
+          .output = scan_page_path(folder, name),
+          .key = key_of_scan_page(dataset_key, dataset),
+          .data = PageJobData{}};
+}
+
+Job scene_job(const std::string& name, const fs::path& scene, const fs::path& archive,
+              const fs::path& folder) {
+  Job job = {.kind = &scene_kind(),
+             .name = name,
+             .input = recognised_path(archive, name),
+             .output = scene_page_path(folder, name),
+             .key = "",
+             .data = SceneJobData{.scene = scene, .archive = archive}};
+  job.key = ScenePageKind::key_of(job);
+  return job;
+}
+
+Job report_job(const fs::path& archive, const fs::path& folder, bool index_only) {
+  return {.kind = &report_kind(),
+          .name = index_path(folder).filename().string(),
+          .input = archive,
+          .output = index_path(folder),
+          .key = "",
+          .data = ReportJobData{index_only}};
+}
+
+}  // namespace semigeo::jobs

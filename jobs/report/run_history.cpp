@@ -1,0 +1,95 @@
+#include "jobs/report/run_history.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <string_view>
+
+#include "io/files/file_digest.hpp"
+#include "jobs/archive/utc_time.hpp"
+#include "jobs/report/report_files.hpp"
+
+namespace semigeo::jobs {
+namespace {
+
+constexpr std::string_view kSurface = "surface ";
+
+class HistoryReader {
+ public:
+  void read(const JournalEntry& entry) {
+    if (const auto* run = std::get_if<RunStarted>(&entry.event)) {
+      next_ = {.started = entry.time, .start = *run};
+      next_name_ = entry.run;
+    } else if (const auto* begun = std::get_if<JobStarted>(&entry.event)) {
+      if (makes_page(begun->job)) return;
+      take(entry);
+      history_.running.insert(begun->job);
+    } else if (const auto* job = std::get_if<JobEnded>(&entry.event)) {
+      if (makes_page(job->job) && job->state != "failed") return;
+      take(entry);
+      end(*job, seconds_between(history_.run.started, entry.time));
+    }
+  }
+
+  RunHistory finish() {
+    if (history_.run.made_datasets || history_.night.started.empty()) history_.night = history_.run;
+    history_.digest = io::xxh3_of_text(content_);
+    return std::move(history_);
+  }
+
+ private:
+  /// The run that has this event is the last one that did something.
+  void take(const JournalEntry& entry) {
+    if (entry.run == next_name_) {
+      if (history_.run.made_datasets) history_.night = std::move(history_.run);
+      history_.run = std::move(next_);
+      next_name_.clear();
+      history_.running.clear();
+    }
+    const auto* job = std::get_if<JobEnded>(&entry.event);
+    content_.append(entry.run).append("\n").append(entry.time).append("\n");
+    if (job != nullptr) content_.append(job->job).append("\n").append(job->state).append("\n");
+  }
+
+  void end(const JobEnded& job, double now) {
+    history_.running.erase(job.job);
+    LastRun& run = history_.run;
+    ++run.ended[job.state];
+    if (job.state == "failed") run.failed[job.job] = job.error;
+    if (!makes_page(job.job)) add_span(job, now);
+    if (!job.job.starts_with(kSurface)) return;
+    run.made_datasets = true;
+    const std::string name = job.job.substr(kSurface.size());
+    history_.last[name] = job;
+    if (job.state == "done") history_.made[name] = job;
+  }
+
+  void add_span(const JobEnded& job, double now) {
+    LastRun& run = history_.run;
+    run.cpu_seconds += job.cpu_seconds;
+    run.peak_bytes = std::max(run.peak_bytes, job.peak_bytes);
+    run.seconds = std::max({run.seconds, now, job.seconds});
+    if (job.seconds <= 0) return;
+    const double size = static_cast<double>(job.vertices) * static_cast<double>(job.levels);
+    run.spans.push_back({.begin = std::max(0.0, now - job.seconds),
+                         .end = std::max(now, job.seconds),
+                         .threads = static_cast<double>(std::max<std::int64_t>(1, job.threads)),
+                         .vertex_levels = job.state == "done" ? size : 0});
+  }
+
+  RunHistory history_;
+  LastRun next_;           ///< A run that has done nothing yet.
+  std::string next_name_;  ///< Name of that run.
+  std::string content_;
+};
+
+}  // namespace
+
+RunHistory read_history(const std::filesystem::path& archive) {
+  HistoryReader reader;
+  read_journal(
+      archive, [&](const JournalEntry& entry) { reader.read(entry); },
+      std::numeric_limits<std::int64_t>::max());  // whole, for old scans
+  return reader.finish();
+}
+
+}  // namespace semigeo::jobs

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "jobs/archive/journal.hpp"
+
+namespace semigeo::jobs {
+
+/// A job of a run that has ended.
+struct RunSpan {
+  double begin = 0;  ///< Seconds since the start of the run.
+  double end = 0;
+  double threads = 0;
+  double vertex_levels = 0;  ///< Vertices times levels of the dataset that the job has made.
+};
+
+/// The last run of an archive that did something besides making pages.
+struct LastRun {
+  std::string started = {};  ///< In UTC; empty if there was no run.
+  RunStarted start = {};
+  double seconds = 0;      ///< From the start to the end of the last job that is not about pages.
+  double cpu_seconds = 0;  ///< Of its jobs.
+  double peak_bytes = 0;   ///< Of the job that took most memory.
+  std::map<std::string, std::int64_t> ended = {};  ///< Number of jobs by their state.
+  std::map<std::string, std::string> failed = {};  ///< Reason, by name of the job.
+  std::vector<RunSpan> spans = {};                 ///< Jobs that are done or have failed.
+  bool made_datasets = false;                      ///< It has done or tried surface jobs.
+};
+
+/// The journal as a report shows it. Jobs that make pages are left out, unless they have failed, so
+/// that a report does not change itself.
+struct RunHistory {
+  std::map<std::string, JobEnded> last;  ///< The last end, by name of the dataset.
+  std::map<std::string, JobEnded> made;  ///< The last end with a dataset, by its name.
+  LastRun run;                           ///< The last run.
+  LastRun night;  ///< The last run that made datasets, or tried to; or else the last run.
+  std::set<std::string> running;  ///< Jobs of the last run that have begun and not ended.
+  std::string digest;  ///< Hash of all that was read: what is shown changes only if it changes.
+};
+
+/// Reads all of the journal of an archive. Throws io::Error if it cannot be read.
+RunHistory read_history(const std::filesystem::path& archive);
+
+}  // namespace semigeo::jobs

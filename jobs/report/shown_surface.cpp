@@ -1,0 +1,91 @@
+#include "jobs/report/shown_surface.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "io/files/base64.hpp"
+#include "io/files/error.hpp"
+#include "kernels/repair/decimation.hpp"
+
+namespace semigeo::jobs {
+
+using Eigen::Vector3f;
+
+ShownSurface read_shown_surface(const io::Dataset& dataset, int level) {
+  ShownSurface shown;
+  const std::vector<float> points = dataset.read_floats(level, "points");
+  for (std::size_t i = 0; i < points.size(); i += 3)
+    shown.points.emplace_back(points[i], points[i + 1], points[i + 2]);
+  const std::vector<std::int64_t> corners = dataset.read_integers(level, "triangles");
+  const auto vertices = static_cast<std::int64_t>(shown.points.size());
+  for (std::size_t i = 0; i < corners.size(); i += 3) {
+    kernels::Triangle triangle = {};
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const std::int64_t vertex = corners[i + corner];
+      if (vertex < 0 || vertex >= vertices)
+        throw io::Error(dataset.path(), io::level_path(level) + "/triangles",
+                        "has a corner that is no vertex", "make the dataset again");
+      triangle[corner] = static_cast<std::int32_t>(vertex);
+    }
+    shown.triangles.push_back(triangle);
+  }
+  return shown;
+}
+
+kernels::Surface connected(ShownSurface shown) {
+  kernels::Surface surface;
+  const auto all = static_cast<std::int64_t>(shown.points.size());
+  static_cast<kernels::Connectivity&>(surface) = kernels::connect(std::move(shown.triangles), all);
+  surface.points = std::move(shown.points);
+  surface.part_count = kernels::number_parts(surface, surface.part);
+  return surface;
+}
+
+ShownSurface decimated(ShownSurface shown, std::int64_t vertices) {
+  if (static_cast<std::int64_t>(shown.points.size()) <= vertices) return shown;
+  kernels::DecimatedSurface small = kernels::decimate(
+      connected(std::move(shown)), {.target_vertices = vertices, .measure = false});
+  return {.points = std::move(small.surface.points),
+          .triangles = std::move(small.surface.triangles),
+          .rows = std::move(small.source_vertex)};
+}
+
+ShownBox box_of(const std::vector<Vector3f>& points) {
+  ShownBox box;
+  if (points.empty()) return box;
+  Vector3f high = points.front();
+  box.low = points.front();
+  for (const Vector3f& p : points) {
+    box.low = box.low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  box.size = (high - box.low).maxCoeff();
+  return box;
+}
+
+std::vector<std::uint16_t> fractions(const std::vector<Vector3f>& points, const ShownBox& box) {
+  constexpr float kMost = std::numeric_limits<std::uint16_t>::max();
+  const float scale = box.size > 0 ? kMost / box.size : 0;
+  std::vector<std::uint16_t> result;
+  for (const Vector3f& p : points)
+    for (const float x : (scale * (p - box.low)).eval())
+      result.push_back(static_cast<std::uint16_t>(std::clamp(x + 0.5f, 0.0f, kMost)));
+  return result;
+}
+
+void add_surface(nlohmann::json& json, const ShownSurface& surface, const ShownBox& box) {
+  json["low"] = {box.low.x(), box.low.y(), box.low.z()};
+  json["size"] = box.size;
+  json["shown_vertices"] = surface.points.size();
+  json["points"] = io::base64_of(fractions(surface.points, box));
+  if (!surface.rows.empty()) json["rows"] = io::base64_of(surface.rows);
+  std::vector<std::uint16_t> corners;
+  for (const kernels::Triangle& triangle : surface.triangles)
+    for (const std::int32_t corner : triangle)
+      corners.push_back(static_cast<std::uint16_t>(corner));
+  json["triangles"] = io::base64_of(corners);
+}
+
+}  // namespace semigeo::jobs
