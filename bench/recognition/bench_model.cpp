@@ -44,6 +44,11 @@ kernels::TriangleMesh file_mesh(const kernels::BuiltSurface& built) {
   return mesh;
 }
 
+kernels::TriangleMesh decimated(const kernels::TriangleMesh& mesh, std::int64_t most_vertices) {
+  if (most_vertices <= 0 || std::ssize(mesh.points) <= most_vertices) return mesh;
+  return bench::quadric_decimated(mesh, most_vertices);
+}
+
 std::string stem_of(fs::path path) {
   if (path.extension() == ".gz") path = path.stem();
   return path.stem().string();
@@ -52,18 +57,15 @@ std::string stem_of(fs::path path) {
 }  // namespace
 
 kernels::TriangleMesh repaired(kernels::TriangleMesh mesh, std::int64_t most_vertices) {
-  const kernels::BuiltSurface built = kernels::build_surface(std::move(mesh));
-  kernels::TriangleMesh result = file_mesh(built);
-  if (most_vertices > 0 && built.surface.vertex_count() > most_vertices)
-    result = bench::quadric_decimated(result, most_vertices);
-  return result;
+  return decimated(file_mesh(kernels::build_surface(std::move(mesh))), most_vertices);
 }
 
 std::unique_ptr<BenchModel> make_model(std::string name, kernels::TriangleMesh mesh,
                                        std::int64_t most_vertices) {
   auto model = std::make_unique<BenchModel>();
   model->name = std::move(name);
-  model->built = kernels::build_surface(repaired(std::move(mesh), most_vertices));
+  model->fine = repaired(std::move(mesh), 0);
+  model->built = kernels::build_surface(decimated(model->fine, most_vertices));
   if (model->built.surface.face_count() == 0) return nullptr;
   model->mesh = file_mesh(model->built);
   const Eigen::AlignedBox3d box = kernels::bounding_box(model->mesh.points);

@@ -17,6 +17,7 @@ namespace semigeo::recognition {
 /// Describes an object of a library. Coordinates are those of its file.
 struct BenchModel {
   std::string name;
+  kernels::TriangleMesh fine;   ///< The mesh after repair.
   kernels::TriangleMesh mesh;   ///< The mesh after repair and decimation.
   kernels::BuiltSurface built;  ///< The surface of that mesh.
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();

@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "bench/recognition/diagnosis.hpp"
+#include "bench/recognition/heap_scene.hpp"
 #include "bench/recognition/model_library.hpp"
 #include "bench/recognition/range_scan.hpp"
 #include "bench/recognition/report.hpp"
@@ -56,6 +58,17 @@ class Experiments {
 
   void range_scan(const Scene& scene) { look(scene, Opened(libraries_, {}, method_)); }
 
+  void heaps() {
+    const Opened opened(libraries_, beyond_known(), method_);
+    for (std::uint64_t s = 0; s < options_.seeds; ++s)
+      for (int number = 0; number < options_.heaps; ++number) {
+        const Scene scene = make_heap_scene(known(), number, options_.first_seed + s);
+        look(scene, opened, [&](const kernels::RecognitionModel& model, Outcome& outcome) {
+          if (options_.diagnose) diagnose(scene, model, opened, outcome);
+        });
+      }
+  }
+
   void false_positives() {
     for (std::size_t i = 0; i < known_; ++i) {
       std::vector<std::size_t> left_out = beyond_known();
@@ -80,10 +93,22 @@ class Experiments {
     for (std::size_t i = known_; i < models_.size(); ++i) result.push_back(i);
     return result;
   }
-  void look(const Scene& scene, const Opened& opened) {
-    outcomes_.push_back(
-        try_scene(scene, models_, opened.names, opened.recogniser, options_.parameters, context_));
+  void look(const Scene& scene, const Opened& opened, const Inspector& inspect = {}) {
+    outcomes_.push_back(try_scene(scene, models_, opened.names, opened.recogniser, inspect,
+                                  options_.parameters, context_));
     told_(outcomes_.back());
+  }
+  /// Examines where the objects were lost that are not reported.
+  void diagnose(const Scene& scene, const kernels::RecognitionModel& model, const Opened& opened,
+                Outcome& outcome) const {
+    if (outcome.reported()) return;
+    const Diagnoser diagnoser(*opened.library, model, options_.recognition, context_);
+    for (std::size_t i = 0; i < outcome.objects.size(); ++i) {
+      ObjectOutcome& object = outcome.objects[i];
+      const auto at = std::ranges::find(opened.names, object.model);
+      if (!object.reported)
+        object.diagnosis = diagnoser.diagnosis(at - opened.names.begin(), scene.objects[i].pose);
+    }
   }
 
   ModelSpan models_;
@@ -122,6 +147,7 @@ std::vector<Outcome> run_experiments(BenchModels& models, const Method& method,
   Experiments experiments(models, known, libraries, method, options, told, context);
   experiments.generated(options.kinds);
   if (scan) experiments.range_scan(scan->scene);
+  if (wanted(kHeap)) experiments.heaps();
   if (wanted(kFalsePositives)) experiments.false_positives();
   return experiments.take();
 }

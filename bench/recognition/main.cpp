@@ -11,6 +11,8 @@
 
 #include "bench/recognition/bench_model.hpp"
 #include "bench/recognition/experiments.hpp"
+#include "bench/recognition/heap_report.hpp"
+#include "bench/recognition/heap_scene.hpp"
 #include "bench/recognition/report.hpp"
 #include "bench/recognition/scenes.hpp"
 #include "bench/recognition/thesis_tables.hpp"
@@ -46,6 +48,7 @@ std::vector<std::string> all_kinds() {
   for (const SceneKind& kind : scene_kinds()) kinds.push_back(kind.name);
   kinds.insert(kinds.begin() + 6, kRangeScan);
   kinds.push_back(kFalsePositives);
+  kinds.push_back(kHeap);
   return kinds;
 }
 
@@ -89,6 +92,7 @@ int run(Options options, const std::vector<std::string>& arguments) {
   engine::Observer observer;
   const engine::RunContext context{workers, observer, {}};
   options.experiments.model_vertices = options.models.most_vertices;
+  options.experiments.diagnose = options.method == "own";
   std::vector<SkippedModel> skipped;
   BenchModels models = read_models(options.models, skipped);
   if (options.verbose)
@@ -111,6 +115,7 @@ int run(Options options, const std::vector<std::string>& arguments) {
   std::printf("%zu models; %zu files left out%s\n", known, skipped.size(),
               skipped.empty() || options.verbose ? "" : " (--verbose says why)");
   print(outcomes);
+  print_heaps(outcomes, options.experiments.recognition.min_score);
   print_misses(outcomes);
   std::vector<std::string> names;
   for (const auto& model : models) names.push_back(model->name);
@@ -123,6 +128,7 @@ void add_options(CLI::App& app, Options& options) {
   ExperimentOptions& e = options.experiments;
   const std::vector<std::string> kinds = all_kinds();
   e.kinds = kinds;
+  std::erase(e.kinds, kHeap);
   options.models.places = {SEMIGEO_REAL_SCANS};
   e.scan_folder = SEMIGEO_REAL_SCANS;
   app.add_option("--models", options.models.places, "Files and folders; closed meshes are used")
@@ -137,6 +143,7 @@ void add_options(CLI::App& app, Options& options) {
       ->check(CLI::IsMember(kinds));
   app.add_option("--seeds", e.seeds, "Scenes of each kind and object")->check(CLI::Range(1, 1000));
   app.add_option("--seed", e.first_seed, "The first");
+  app.add_option("--heaps", e.heaps, "Scenes of kind R of each seed")->check(CLI::Range(1, 1000));
   app.add_option("--scans", e.scan_folder, "Folder with the files of G");
   app.add_option("--scan-vertices", e.scan_vertices, "Of G's scene, at most; 0: as it is")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{100'000'000}));
@@ -176,6 +183,7 @@ std::string footer() {
   text +=
       "  G    a real range scan, if its files are there\n"
       "  X    A to E, of an object that the library does not have\n"
+      "  R    a heap of three to six objects, scanned from one side; only if it is asked for\n"
       "named: first in the ranking, or the first three for three objects; posed: with the right "
       "pose;\nreported: all among the objects found, with the right poses; false: objects found "
       "that are not\nthere, and in how many scenes. A pose is right within 5 degrees, 5 % of the "

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
+#include "bench/recognition/heap_scene.hpp"
 #include "bench/support/quantile.hpp"
 
 namespace semigeo::recognition {
@@ -129,6 +131,15 @@ Json seconds_json(const Seconds& seconds) {
   return {{"wall", seconds.wall}, {"cpu", seconds.cpu}};
 }
 
+Json diagnosis_json(const std::optional<Diagnosis>& diagnosis) {
+  if (!diagnosis) return nullptr;
+  return {{"features", diagnosis->features},
+          {"matches", diagnosis->matches},
+          {"votes", diagnosis->votes},
+          {"cluster", diagnosis->cluster},
+          {"score", diagnosis->score}};
+}
+
 Json outcome_json(const Outcome& o) {
   Json objects = Json::array();
   for (const ObjectOutcome& object : o.objects)
@@ -136,12 +147,17 @@ Json outcome_json(const Outcome& o) {
                        {"rank", object.rank},
                        {"score", object.score},
                        {"pose_error", pose_json(object.ranked)},
+                       {"occlusion", object.occlusion},
+                       {"clutter", object.clutter},
+                       {"diagnosis", diagnosis_json(object.diagnosis)},
                        {"reported", object.reported}});
   return {{"kind", o.kind},
           {"scene", o.scene},
           {"seed", o.seed},
           {"vertices", o.vertices},
           {"features", o.features},
+          {"noise", o.noise},
+          {"mixed_pixels", o.mixed_pixels},
           {"scene_triplets", o.scene_triplets},
           {"matches", o.matches},
           {"named", o.named()},
@@ -183,7 +199,8 @@ void print(std::span<const Outcome> outcomes) {
 void print_misses(std::span<const Outcome> outcomes) {
   bool any = false;
   for (const Outcome& o : outcomes) {
-    if (absent(o) || (o.posed() && o.reported())) continue;
+    // Heaps have a report of their own.
+    if (absent(o) || o.kind == kHeap || (o.posed() && o.reported())) continue;
     if (!std::exchange(any, true)) std::printf("\nMissed\n");
     print_scene(o);
     std::printf(" %s, first %s;",

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -33,6 +34,8 @@ const SceneKind* scene_kind(const std::string& name);
 struct PlacedObject {
   std::size_t model = 0;     ///< Index of the model.
   kernels::Similarity pose;  ///< Leads from the model to the scene, in coordinates of the files.
+  double occlusion = 0;      ///< Share of the object's surface that a scanner does not see.
+  double clutter = 0;        ///< Share of what a scanner sees that is not this object.
 };
 
 /// Holds a scene whose objects are known.
@@ -42,6 +45,9 @@ struct Scene {
   std::uint64_t seed = 0;  ///< Seed of all its random choices.
   kernels::TriangleMesh mesh;
   std::vector<PlacedObject> objects;
+  double noise = 0;                         ///< Noise of the scanner, in pixels.
+  bool mixed_pixels = false;                ///< Pixels beside depth jumps lie between two surfaces.
+  std::optional<Eigen::Vector3d> eye = {};  ///< Place of the scanner, if there is one.
 };
 
 /// Makes a scene of the model `first` (an index) and of others that are chosen at random, if the

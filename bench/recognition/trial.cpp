@@ -62,8 +62,14 @@ Outcome judged(const Scene& scene, ModelSpan models, const std::vector<std::stri
   outcome.seed = scene.seed;
   outcome.scene_triplets = found.scene_triplets;
   outcome.matches = found.matches;
-  for (const PlacedObject& object : scene.objects)
-    outcome.objects.emplace_back().model = models[object.model]->name;
+  outcome.noise = scene.noise;
+  outcome.mixed_pixels = scene.mixed_pixels;
+  for (const PlacedObject& object : scene.objects) {
+    ObjectOutcome& placed = outcome.objects.emplace_back();
+    placed.model = models[object.model]->name;
+    placed.occlusion = object.occlusion;
+    placed.clutter = object.clutter;
+  }
   for (std::size_t i = 0; i < found.ranking.size(); ++i) {
     const jobs::Candidate& candidate = found.ranking[i];
     const std::string& name = names.at(candidate.model);
@@ -103,7 +109,8 @@ Outcome judged(const Scene& scene, ModelSpan models, const std::vector<std::stri
 }
 
 Outcome try_scene(const Scene& scene, ModelSpan models, const std::vector<std::string>& names,
-                  const Recogniser& recogniser, const jobs::RecognitionParameters& parameters,
+                  const Recogniser& recogniser, const Inspector& inspect,
+                  const jobs::RecognitionParameters& parameters,
                   const engine::RunContext& context) {
   const kernels::BuiltSurface built = kernels::build_surface(kernels::TriangleMesh(scene.mesh));
   Seconds scale_space, search;
@@ -116,6 +123,7 @@ Outcome try_scene(const Scene& scene, ModelSpan models, const std::vector<std::s
   outcome.features = std::ssize(model.features.features);
   outcome.scale_space = scale_space;
   outcome.search = search;
+  if (inspect) inspect(model, outcome);
   return outcome;
 }
 

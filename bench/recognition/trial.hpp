@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "bench/recognition/diagnosis.hpp"
 #include "bench/recognition/judgement.hpp"
 #include "bench/recognition/scenes.hpp"
 #include "engine/run_context.hpp"
@@ -29,6 +31,9 @@ struct ObjectOutcome {
   double score = 0;       ///< Score of the model in the ranking.
   PoseError ranked;       ///< Error of the pose in the ranking.
   bool reported = false;  ///< The model is among the objects found, with the right pose.
+  double occlusion = 0;   ///< See PlacedObject.
+  double clutter = 0;     ///< See PlacedObject.
+  std::optional<Diagnosis> diagnosis = {};  ///< Of an object in a heap that is not reported.
 };
 
 /// Tells what was recognised in a scene.
@@ -38,6 +43,8 @@ struct Outcome {
   std::uint64_t seed = 0;
   std::int64_t vertices = 0;
   std::int64_t features = 0;
+  double noise = 0;           ///< Noise of the scanner, in pixels.
+  bool mixed_pixels = false;  ///< See Scene.
   std::vector<ObjectOutcome> objects;
   std::string first;            ///< First model of the ranking; empty if the ranking is.
   std::string best_wrong;       ///< Best model of the ranking that is not in the scene.
@@ -58,10 +65,14 @@ struct Outcome {
   bool reported() const;
 };
 
+/// Is called with a recognised scene and what became of it, which it may add to.
+using Inspector = std::function<void(const kernels::RecognitionModel& scene, Outcome& outcome)>;
+
 /// Recognises a scene and judges the result. `names` are the names of the library's models.
+/// `inspect` may be empty.
 Outcome try_scene(const Scene& scene, ModelSpan models, const std::vector<std::string>& names,
-                  const Recogniser& recogniser, const jobs::RecognitionParameters& parameters,
-                  const engine::RunContext& context);
+                  const Recogniser& recogniser, const Inspector& inspect,
+                  const jobs::RecognitionParameters& parameters, const engine::RunContext& context);
 
 /// Judges what was found in a scene. Times and the number of vertices are not set.
 Outcome judged(const Scene& scene, ModelSpan models, const std::vector<std::string>& names,

@@ -3,71 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
 #include "jobs/stages/match_triplets.hpp"
+#include "jobs/stages/match_votes.hpp"
 #include "jobs/stages/pose_examiner.hpp"
 #include "kernels/recognition/feature_pair.hpp"
-#include "kernels/recognition/feature_triangle.hpp"
 
 namespace semigeo::jobs {
 namespace {
 
 using kernels::RecognitionModel;
 using kernels::Similarity;
-
-/// Returns the options with which features of a scene are combined, to find what a model has.
-template <typename Options>
-Options as_scene(Options options, double band_slack) {
-  options.nearest /= band_slack;
-  options.farthest *= band_slack;
-  options.every_order = true;
-  return options;
-}
-
-kernels::TripletOptions scene_triplets(const LookUpTuning& tuning) {
-  kernels::TripletOptions options = as_scene(kernels::TripletOptions{}, tuning.band_slack);
-  options.min_height *= tuning.height_slack;
-  return options;
-}
-
-kernels::PairOptions scene_pairs(const RecognitionTuning& tuning) {
-  return as_scene(kernels::PairOptions{.neighbours = tuning.pairs.neighbours},
-                  tuning.look_up.band_slack);
-}
-
-/// Returns the poses that matches vote for. The matches of one part of the scene must lie side by
-/// side. A match shares its part with others of this model only: what agrees on a pose must not
-/// depend on how many models the library has. Of more than `most` matches the weightiest vote.
-template <typename Match, typename PartOf, typename PoseOf>
-kernels::PoseVotes votes_of(const std::vector<Match>& matches, const PartOf& part_of,
-                            const PoseOf& pose_of, const RecognitionModel& model,
-                            std::size_t most) {
-  struct Weighed {
-    double weight;
-    std::size_t match;
-  };
-  std::vector<Weighed> weighed;
-  weighed.reserve(matches.size());
-  for (auto first = matches.begin(); first != matches.end();) {
-    const auto last = std::find_if(first, matches.end(), [&](const Match& match) {
-      return part_of(match) != part_of(*first);
-    });
-    const double weight = 1.0 / static_cast<double>(last - first);
-    for (; first != last; ++first)
-      weighed.push_back({weight, static_cast<std::size_t>(first - matches.begin())});
-  }
-  if (weighed.size() > most) {
-    std::ranges::stable_sort(weighed, std::ranges::greater(), &Weighed::weight);
-    weighed.resize(most);
-    std::ranges::sort(weighed, {}, &Weighed::match);
-  }
-  std::vector<kernels::PoseVote> result;
-  result.reserve(weighed.size());
-  for (const auto& [weight, match] : weighed) result.push_back({pose_of(matches[match]), weight});
-  return {result, model.centre.cast<double>(), model.diagonal};
-}
 
 /// Recognises one scene. A Recogniser is used once.
 class Recogniser {
@@ -115,12 +62,12 @@ class Recogniser {
   /// Matches triplets of the scene with the library, and makes pairs if there are few of them.
   void look_up() {
     const std::vector<kernels::Triplet> triplets =
-        kernels::local_triplets(scene_.features, scene_triplets(tuning_.look_up));
+        kernels::local_triplets(scene_.features, scene_triplet_options(tuning_.look_up));
     matches_ = match_triplets(library_, triplets, tuning_.look_up, context_);
     result_.scene_triplets = matches_.scene_triplets;
     result_.matches = static_cast<std::int64_t>(matches_.matches.size());
     if (result_.scene_triplets < tuning_.pairs.few_triplets)
-      pairs_ = kernels::local_pairs(scene_.features, scene_pairs(tuning_));
+      pairs_ = kernels::local_pairs(scene_.features, scene_pair_options(tuning_));
   }
 
   /// Lists models that got votes. Those come first that got the most beyond what chance gives a
@@ -144,50 +91,20 @@ class Recogniser {
     for (std::size_t i = 0; i < order.size(); ++i) shortlist_[i].model = order[i];
   }
 
-  /// Returns the weightiest matches of a listed model, those of one triangle side by side.
-  std::vector<TripletMatch> matches_of(const ListedModel& listed) const {
-    std::vector<TripletMatch> matches(matches_.matches.begin() + matches_.first[listed.model],
-                                      matches_.matches.begin() + matches_.first[listed.model + 1]);
-    const ShortlistTuning& tuning = tuning_.shortlist;
-    const std::size_t most =
-        std::min(tuning.most_matches, tuning.most_matches_together / shortlist_.size());
-    if (matches.size() > most) {
-      const auto heavier = [](const TripletMatch& a, const TripletMatch& b) {
-        return std::tie(b.weight, a.triangle, a.model_corners) <
-               std::tie(a.weight, b.triangle, b.model_corners);
-      };
-      std::ranges::nth_element(matches, matches.begin() + static_cast<std::ptrdiff_t>(most),
-                               heavier);
-      matches.resize(most);
-      std::ranges::sort(matches, heavier);
-    }
-    std::ranges::stable_sort(matches, {}, &TripletMatch::triangle);
-    return matches;
-  }
-
   /// Finds the poses on which triplets of the listed model agree, and those on which pairs do.
   void find_poses(std::size_t index) {
     ListedModel& listed = shortlist_[index];
     listed.record = library_.read_model(listed.model);
     const RecognitionModel& model = listed.record;
-    listed.votes = votes_of(
-        matches_of(listed), [](const TripletMatch& match) { return match.triangle; },
-        [&](const TripletMatch& match) {
-          return kernels::similarity_between(
-              kernels::feature_triangle(model.features, match.model_corners),
-              kernels::feature_triangle(scene_.features, match.scene_corners));
-        },
-        model, tuning_.shortlist.most_matches);
+    const ShortlistTuning& tuning = tuning_.shortlist;
+    const std::size_t most =
+        std::min(tuning.most_matches, tuning.most_matches_together / shortlist_.size());
+    listed.votes =
+        votes_of_triplets(weightiest_matches(matches_, listed.model, most), model, scene_);
     add_clusters(listed.votes, 1, index);
     if (pairs_.empty() || index >= tuning_.pairs.most_models) return;
-    const std::vector<kernels::FeaturePair> pairs = kernels::local_pairs(model.features, {});
-    const kernels::PoseVotes of_pairs = votes_of(
-        kernels::match_pairs(pairs_, pairs), [](const kernels::PairMatch& m) { return m.scene; },
-        [&](const kernels::PairMatch& m) {
-          return kernels::similarity_between(pairs[m.model], pairs_[m.scene]);
-        },
-        model, tuning_.shortlist.most_matches);
-    add_clusters(of_pairs, tuning_.pairs.vote_weight, index);
+    add_clusters(votes_of_pairs(pairs_, model, tuning.most_matches), tuning_.pairs.vote_weight,
+                 index);
   }
 
   void add_clusters(const kernels::PoseVotes& votes, double weight, std::size_t index) {
