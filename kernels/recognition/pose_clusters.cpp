@@ -3,12 +3,34 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
+#include <ranges>
 
 namespace semigeo::kernels {
 
 using Eigen::Quaternionf;
 using Eigen::Vector3d;
+
+namespace {
+
+using Places = std::ranges::subrange<std::vector<std::int32_t>::iterator>;
+
+/// Moves `count` elements that are spread evenly to the front. Both groups keep their order.
+void spread_first(Places places, std::ptrdiff_t count) {
+  if (count <= 0 || count >= std::ssize(places)) return;
+  const double step = static_cast<double>(places.size()) / static_cast<double>(count);
+  std::vector<std::int32_t> chosen;
+  std::vector<std::int32_t> rest;
+  for (std::ptrdiff_t i = 0, next = 0; i < std::ssize(places); ++i) {
+    const bool take = i == static_cast<std::ptrdiff_t>((static_cast<double>(next) + 0.5) * step);
+    if (take) ++next;
+    (take ? chosen : rest).push_back(places[i]);
+  }
+  std::ranges::copy(rest, std::ranges::copy(chosen, places.begin()).out);
+}
+
+}  // namespace
 
 PoseVotes::PoseVotes(std::span<const PoseVote> votes, const Vector3d& centre, double diagonal)
     : centre_(centre), diagonal_(static_cast<float>(diagonal)) {
@@ -73,21 +95,25 @@ void PoseVotes::for_agreeing(const Placement& seed, const PoseTolerance& toleran
       take(*p);
 }
 
-/// Returns seeds: half of them are the heaviest votes, half are spread evenly over the rest.
+/// Returns seeds: half of them are the heaviest votes, half are spread evenly over the rest. Of
+/// votes of one weight that cannot all be among the heaviest, those are taken that are spread
+/// evenly over all scales.
 std::vector<std::int32_t> PoseVotes::seeds(int most) const {
   std::vector<std::int32_t> order(placements_.size());
   std::iota(order.begin(), order.end(), 0);
   if (order.size() <= static_cast<std::size_t>(most)) return order;
   const std::ptrdiff_t half = most / 2;
-  std::ranges::stable_sort(order, std::ranges::greater(),
-                           [&](std::int32_t i) { return placements_[i].weight; });
-  std::vector<std::int32_t> chosen(order.begin(), order.begin() + half);
-  std::vector<std::int32_t> rest(order.begin() + half, order.end());
-  std::ranges::sort(rest);
-  const double step = static_cast<double>(rest.size()) / static_cast<double>(half);
-  for (std::ptrdiff_t i = 0; i < half; ++i)
-    chosen.push_back(rest[static_cast<std::size_t>((static_cast<double>(i) + 0.5) * step)]);
-  return chosen;
+  const auto weight = [&](std::int32_t i) { return placements_[i].weight; };
+  std::ranges::stable_sort(order, std::ranges::greater(), weight);
+  if (half > 0) {
+    const float least = weight(order[half - 1]);
+    const auto tied = std::ranges::equal_range(order, least, std::ranges::greater(), weight);
+    spread_first(tied, half - (tied.begin() - order.begin()));
+  }
+  std::ranges::sort(order.begin() + half, order.end());
+  spread_first({order.begin() + half, order.end()}, most - half);
+  order.resize(most);
+  return order;
 }
 
 PoseCluster PoseVotes::cluster_about(const Placement& seed, const PoseTolerance& tolerance) const {

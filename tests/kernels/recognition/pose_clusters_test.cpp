@@ -95,6 +95,23 @@ TEST(PoseClusters, SupportIsTheWeightAboutAPose) {
   EXPECT_EQ(all.support(random_similarity(random), {}), 0);
 }
 
+TEST(PoseClusters, SeedsOfOneWeightAreSpreadOverAllScales) {
+  std::mt19937_64 random(5);
+  const auto at_scale = [&](double least, double most) {
+    Similarity pose = random_similarity(random);
+    pose.scale = std::uniform_real_distribution(least, most)(random);
+    return pose;
+  };
+  // Of the votes of weight 1, those that agree have the largest scale.
+  const Similarity right = at_scale(2, 2);
+  std::vector<PoseVote> votes = votes_for(right, 60, 1, random);
+  for (int i = 0; i < 2000; ++i) votes.push_back({at_scale(0.1, 1), 1});
+  for (int i = 0; i < 20'000; ++i) votes.push_back({at_scale(3, 10), 0.1});
+  const auto clusters = PoseVotes(votes, kCentre, kDiagonal).clusters({.seeds = 200});
+  EXPECT_NEAR(clusters.front().weight, 60, 1);
+  EXPECT_LT(centre_error(clusters.front().pose, right), 0.01);
+}
+
 TEST(PoseClusters, AsManyAsWanted) {
   std::mt19937_64 random(3);
   std::vector<PoseVote> votes;
