@@ -25,10 +25,10 @@ namespace fs = std::filesystem;
 int dry_run(const ExecutionOptions& options, const PlanSource& source) {
   DigestCache cache(source.home);
   const std::vector<PlannedJob> plan = source.plan(cache);
-  if (options.graph != GraphFormat::kNone) {
-    const std::vector<GraphNode> graph = graph_of(plan);
-    print_text(options.graph == GraphFormat::kDot ? to_dot(graph)
-                                                  : io::printable_json(to_json(graph)));
+  if (options.graph == GraphFormat::kDot) {
+    write_graph_dot(plan, print_text);
+  } else if (options.graph == GraphFormat::kJson) {
+    write_graph_json(plan, print_text);
   } else {
     print_plan(plan, options.json, options.explain, source.notes());
   }

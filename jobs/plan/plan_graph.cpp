@@ -55,8 +55,8 @@ std::string quoted(std::initializer_list<std::string_view> lines) {
 
 }  // namespace
 
-std::vector<GraphNode> graph_of(const std::vector<PlannedJob>& plan) {
-  std::vector<GraphNode> graph;
+void for_each_node(const std::vector<PlannedJob>& plan,
+                   const std::function<void(const GraphNode&)>& visit) {
   std::set<std::string> files;  // a library has one node for all scenes
   for (const PlannedJob& planned : plan) {
     const Job& job = planned.job;
@@ -70,41 +70,51 @@ std::vector<GraphNode> graph_of(const std::vector<PlannedJob>& plan) {
     for (const ExternalFile& file : job.kind->external_files(planned)) {
       const GraphNode input = node_of(file);
       node.dependencies.push_back(input.id);
-      if (files.insert(input.id).second) graph.push_back(input);
+      if (files.insert(input.id).second) visit(input);
     }
-    graph.push_back(node);
-    graph.push_back({.id = output_id(job),
-                     .kind = job.kind->words().output,
-                     .name = job.output.string(),
-                     .state = output_state(planned),
-                     .dependencies = {node.id}});
+    visit(node);
+    visit({.id = output_id(job),
+           .kind = job.kind->words().output,
+           .name = job.output.string(),
+           .state = output_state(planned),
+           .dependencies = {node.id}});
   }
-  return graph;
 }
 
-std::string to_json(const std::vector<GraphNode>& graph) {
-  auto nodes = nlohmann::ordered_json::array();
-  for (const GraphNode& node : graph)
-    nodes.push_back({{"id", node.id},
-                     {"kind", node.kind},
-                     {"name", node.name},
-                     {"state", node.state},
-                     {"dependencies", node.dependencies}});
-  const nlohmann::ordered_json document = {{"nodes", nodes}};
-  return document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
+void write_graph_json(const std::vector<PlannedJob>& plan, const WriteText& write) {
+  constexpr std::string_view kIndent = "    ";
+  std::string_view before = "\n";
+  write("{\n  \"nodes\": [");
+  for_each_node(plan, [&](const GraphNode& node) {
+    const nlohmann::ordered_json object = {{"id", node.id},
+                                           {"kind", node.kind},
+                                           {"name", node.name},
+                                           {"state", node.state},
+                                           {"dependencies", node.dependencies}};
+    std::string text(before);
+    text += kIndent;
+    for (const char c : object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace)) {
+      text += c;
+      if (c == '\n') text += kIndent;  // names hold none: JSON writes them as escapes
+    }
+    write(io::printable_json(text));
+    before = ",\n";
+  });
+  write(before == "\n" ? "]\n}\n" : "\n  ]\n}\n");
 }
 
-std::string to_dot(const std::vector<GraphNode>& graph) {
-  std::string text = "digraph semigeo {\n  rankdir=LR;\n";
-  for (const GraphNode& node : graph) {
-    text += "  " + quoted({node.id}) + " [shape=" + (node.is_job ? "box" : "note") +
-            ", style=" + (node.state == "up to date" ? "dashed" : "solid") +
-            ", label=" + quoted({node.is_job ? node.id : node.name, node.state}) + "];\n";
-  }
-  for (const GraphNode& node : graph)
+void write_graph_dot(const std::vector<PlannedJob>& plan, const WriteText& write) {
+  write("digraph semigeo {\n  rankdir=LR;\n");
+  for_each_node(plan, [&](const GraphNode& node) {
+    write("  " + quoted({node.id}) + " [shape=" + (node.is_job ? "box" : "note") +
+          ", style=" + (node.state == "up to date" ? "dashed" : "solid") +
+          ", label=" + quoted({node.is_job ? node.id : node.name, node.state}) + "];\n");
+  });
+  for_each_node(plan, [&](const GraphNode& node) {
     for (const std::string& dependency : node.dependencies)
-      text += "  " + quoted({dependency}) + " -> " + quoted({node.id}) + ";\n";
-  return text + "}\n";
+      write("  " + quoted({dependency}) + " -> " + quoted({node.id}) + ";\n");
+  });
+  write("}\n");
 }
 
 }  // namespace semigeo::jobs

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "jobs/plan/plan.hpp"
@@ -18,16 +20,21 @@ struct GraphNode {
   friend bool operator==(const GraphNode&, const GraphNode&) = default;
 };
 
-/// Returns every job that is planned and the file that it makes, in the order of the plan. Files
-/// that no job makes stand before the first job that reads them, so that dependencies come before
-/// what depends on them.
-std::vector<GraphNode> graph_of(const std::vector<PlannedJob>& plan);
+/// Calls visit(node) for every job that is planned and for the file that it makes, in the order of
+/// the plan. Files that no job makes stand before the first job that reads them, so that
+/// dependencies come before what depends on them. No more than a node is in memory at a time,
+/// besides the names of files.
+void for_each_node(const std::vector<PlannedJob>& plan,
+                   const std::function<void(const GraphNode&)>& visit);
 
-/// Returns the graph as JSON: {"nodes": [{"id", "kind", "name", "state", "dependencies"}]}.
-std::string to_json(const std::vector<GraphNode>& graph);
+/// Takes a document piece by piece.
+using WriteText = std::function<void(std::string_view)>;
 
-/// Returns the graph in the language of Graphviz: files are notes, jobs are boxes, and what is up
-/// to date has a dashed outline.
-std::string to_dot(const std::vector<GraphNode>& graph);
+/// Writes the graph as JSON: {"nodes": [{"id", "kind", "name", "state", "dependencies"}]}.
+void write_graph_json(const std::vector<PlannedJob>& plan, const WriteText& write);
+
+/// Writes the graph in the language of Graphviz: files are notes, jobs are boxes, and what is up to
+/// date has a dashed outline.
+void write_graph_dot(const std::vector<PlannedJob>& plan, const WriteText& write);
 
 }  // namespace semigeo::jobs

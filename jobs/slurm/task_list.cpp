@@ -1,13 +1,13 @@
 #include "jobs/slurm/task_list.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <string_view>
 
 #include "io/files/error.hpp"
+#include "io/files/line_reader.hpp"
 #include "jobs/archive/path_text.hpp"
 
 namespace semigeo::jobs {
@@ -123,17 +123,16 @@ std::string task_list_text(const TaskSettings& settings,
 
 Task read_task(const fs::path& list, int number, const JobKinds& kinds) {
   constexpr const char* kRemedy = "run semigeo again: it makes another list";
-  std::ifstream stream(list);
-  if (!stream) throw io::Error(list, "", "cannot be read", kRemedy);
+  io::LineReader lines(list);
   Task task;
   std::string line;
   int place = 1;
   try {
-    std::getline(stream, line);
+    lines.next(line);
     task.settings = settings_from(line);
     // The lines of a task stand together.
     const std::string head = head_of(number);
-    while (std::getline(stream, line)) {
+    while (lines.next(line)) {
       ++place;
       if (line.starts_with(head)) {
         task.jobs.push_back(job_request_from(line, kinds));
@@ -141,6 +140,8 @@ Task read_task(const fs::path& list, int number, const JobKinds& kinds) {
         break;
       }
     }
+  } catch (const io::Error&) {
+    throw;
   } catch (const std::exception& e) {
     throw io::Error(list, "line " + std::to_string(place), e.what(), kRemedy);
   }
@@ -172,10 +173,10 @@ std::string results_text(const TaskResults& results) {
   return text;
 }
 
-TaskResults read_results(const fs::path& file) {
+TaskResults read_results(const fs::path& file) try {
   TaskResults results;
-  std::ifstream stream(file);
-  for (std::string line; std::getline(stream, line);) {
+  io::LineReader lines(file);
+  for (std::string line; lines.next(line);) {
     try {
       TaskResult result = result_of(job_reply_from(line));
       JobOutcome& outcome = result.outcome;
@@ -189,6 +190,8 @@ TaskResults read_results(const fs::path& file) {
     }
   }
   return results;
+} catch (const io::Error&) {
+  return {};  // the outputs of the jobs decide
 }
 
 }  // namespace semigeo::jobs

@@ -65,7 +65,8 @@ using TaskResults = std::map<std::string, TaskResult>;
 /// Returns a line for each job: its job_id and JobReply, and the seconds, threads and attempts that
 /// it took.
 std::string results_text(const TaskResults& results);
-/// Reads results. Damaged lines are passed over. A file that does not exist has no results.
+/// Reads results. Damaged lines are passed over. A file that cannot be read has no results: the
+/// outputs of the jobs tell what was done.
 TaskResults read_results(const std::filesystem::path& file);
 
 }  // namespace semigeo::jobs

@@ -38,6 +38,24 @@ std::vector<PlannedJob> plan() {
   return jobs;
 }
 
+std::vector<GraphNode> graph_of(const std::vector<PlannedJob>& plan) {
+  std::vector<GraphNode> graph;
+  for_each_node(plan, [&](const GraphNode& node) { graph.push_back(node); });
+  return graph;
+}
+
+std::string dot_of(const std::vector<PlannedJob>& plan) {
+  std::string text;
+  write_graph_dot(plan, [&](std::string_view piece) { text += piece; });
+  return text;
+}
+
+std::string json_of(const std::vector<PlannedJob>& plan) {
+  std::string text;
+  write_graph_json(plan, [&](std::string_view piece) { text += piece; });
+  return text;
+}
+
 TEST(PlanGraphTest, LeadsFromScansThroughJobsToDatasets) {
   const auto graph = graph_of(plan());
   ASSERT_EQ(graph.size(), 15u);
@@ -94,8 +112,8 @@ TEST(PlanGraphTest, LeadsFromDatasetsToALibrary) {
   EXPECT_EQ(dependencies("library l"), (Names{"postings p"}));
   EXPECT_EQ(dependencies("hash library l"), (Names{"library l"}));
   EXPECT_EQ(graph.back().state, "missing");
-  EXPECT_NE(to_dot(graph).find("\"library l\" [shape=box, style=solid"), std::string::npos);
-  EXPECT_NE(to_dot(graph).find("\"run a\" [shape=note"), std::string::npos);
+  EXPECT_NE(dot_of(jobs).find("\"library l\" [shape=box, style=solid"), std::string::npos);
+  EXPECT_NE(dot_of(jobs).find("\"run a\" [shape=note"), std::string::npos);
 }
 
 TEST(PlanGraphTest, ScenesShareTheirLibrary) {
@@ -122,19 +140,20 @@ TEST(PlanGraphTest, ScenesShareTheirLibrary) {
 }
 
 TEST(PlanGraphTest, JsonHoldsEveryNode) {
-  const auto graph = graph_of(plan());
-  const auto document = nlohmann::json::parse(to_json(graph));
-  ASSERT_EQ(document["nodes"].size(), graph.size());
+  const std::string text = json_of(plan());
+  const auto document = nlohmann::ordered_json::parse(text);
+  EXPECT_EQ(text, document.dump(2) + '\n');  // as if it were written at once
+  ASSERT_EQ(document["nodes"].size(), graph_of(plan()).size());
   EXPECT_EQ(document["nodes"][4]["id"], "surface b.ply");
   EXPECT_EQ(document["nodes"][4]["dependencies"][0], "scan /in/b.ply");
-  EXPECT_EQ(nlohmann::json::parse(to_json(std::vector<GraphNode>{}))["nodes"].size(), 0u);
+  EXPECT_EQ(json_of({}), "{\n  \"nodes\": []\n}\n");
 }
 
 TEST(PlanGraphTest, DotQuotesWhatNamesMayHold) {
   auto jobs = plan();
   jobs.resize(1);
   jobs[0].scan = "/in/a \"b\"\\\n\xff.ply";
-  const std::string dot = to_dot(graph_of(jobs));
+  const std::string dot = dot_of(jobs);
   EXPECT_EQ(dot,
             "digraph semigeo {\n"
             "  rankdir=LR;\n"
