@@ -280,7 +280,15 @@ std::string variant_of(std::string_view begin) {
 
 }  // namespace
 
-const ScanFormat kGltfFormat = {.extension = ".gltf", .read = read_gltf, .variant = variant_of};
-const ScanFormat kGlbFormat = {.extension = ".glb", .read = read_gltf, .variant = variant_of};
+const ScanFormat kGltfFormat = {.extension = ".gltf",
+                                .read = read_gltf,
+                                .variant = variant_of,
+                                .content = "meshes",
+                                .variants = "glTF 2.0 with its bytes in the file"};
+const ScanFormat kGlbFormat = {.extension = ".glb",
+                               .read = read_gltf,
+                               .variant = variant_of,
+                               .content = "meshes",
+                               .variants = "binary glTF 2.0"};
 
 }  // namespace semigeo::io

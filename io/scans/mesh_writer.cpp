@@ -1,8 +1,7 @@
 #include "io/scans/mesh_writer.hpp"
 
-#include <algorithm>
 #include <limits>
-#include <stdexcept>
+#include <string>
 
 #include "io/files/error.hpp"
 #include "io/files/output_file.hpp"
@@ -10,18 +9,13 @@
 namespace semigeo::io {
 namespace {
 
-bool is_word(const std::string& name) {
-  return !name.empty() &&
-         std::all_of(name.begin(), name.end(), [](char c) { return c > ' ' && c < 127; });
-}
-
-void check_shapes(const MeshView& mesh) {
-  const std::size_t vertices = mesh.points.size() / 3;
-  bool fits = mesh.points.size() % 3 == 0 && mesh.triangles.size() % 3 == 0 &&
-              (mesh.normals.empty() || mesh.normals.size() == mesh.points.size());
-  for (const NamedScalars& scalars : mesh.scalars)
-    fits = fits && scalars.values.size() == vertices && is_word(scalars.name);
-  if (!fits) throw std::invalid_argument("write_ply: arrays of different lengths, or a bad name");
+/// Returns a number as PLY's int. Throws Error if it does not fit.
+std::int32_t ply_int(const OutputFile& output, std::int64_t value) {
+  if (value < std::numeric_limits<std::int32_t>::min() ||
+      value > std::numeric_limits<std::int32_t>::max())
+    throw Error(output.path(), "", "would need " + std::to_string(value) + " as a PLY's int",
+                "write a .npz or a .vtp");
+  return static_cast<std::int32_t>(value);
 }
 
 std::string header(const MeshView& mesh) {
@@ -32,7 +26,12 @@ std::string header(const MeshView& mesh) {
   if (!mesh.normals.empty())
     for (const char* name : {"nx", "ny", "nz"})
       text += std::string("property float ") + name + "\n";
+  if (!mesh.colours.empty())
+    for (const char* name : {"red", "green", "blue"})
+      text += std::string("property uchar ") + name + "\n";
   for (const NamedScalars& scalars : mesh.scalars) text += "property float " + scalars.name + "\n";
+  for (const NamedIntegers& integers : mesh.integers)
+    text += "property int " + integers.name + "\n";
   text += "element face " + std::to_string(mesh.triangles.size() / 3) + "\n";
   return text + "property list uchar int vertex_indices\nend_header\n";
 }
@@ -43,28 +42,25 @@ void write_vertices(OutputFile& output, const MeshView& mesh) {
     placement.place(&mesh.points[3 * vertex], [&](auto coordinate) { output.number(coordinate); });
     if (!mesh.normals.empty())
       for (std::size_t axis = 0; axis < 3; ++axis) output.number(mesh.normals[3 * vertex + axis]);
+    if (!mesh.colours.empty())
+      for (std::size_t i = 0; i < 3; ++i) output.number(mesh.colours[3 * vertex + i]);
     for (const NamedScalars& scalars : mesh.scalars) output.number(scalars.values[vertex]);
+    for (const NamedIntegers& integers : mesh.integers)
+      output.number(ply_int(output, integers.values[vertex]));
   }
 }
 
 void write_faces(OutputFile& output, const MeshView& mesh) {
-  const auto vertices = static_cast<std::int64_t>(mesh.points.size() / 3);
-  const std::int64_t end =
-      std::min<std::int64_t>(vertices, std::numeric_limits<std::int32_t>::max());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const std::int64_t corner = mesh.triangles[i];
-    if (corner < 0 || corner >= end)
-      throw Error(output.path(), "face " + std::to_string(i / 3),
-                  "refers to vertex " + std::to_string(corner) + " of " + std::to_string(vertices));
     if (i % 3 == 0) output.number(std::uint8_t{3});
-    output.number(static_cast<std::int32_t>(corner));
+    output.number(ply_int(output, mesh.triangles[i]));
   }
 }
 
 }  // namespace
 
 void write_ply(const std::filesystem::path& path, const MeshView& mesh) {
-  check_shapes(mesh);
+  check_mesh(path, mesh);
   OutputFile output(path);
   output.text(header(mesh));
   write_vertices(output, mesh);

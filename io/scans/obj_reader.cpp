@@ -132,6 +132,10 @@ std::string variant_of(std::string_view) {
 
 }  // namespace
 
-const ScanFormat kObjFormat = {.extension = ".obj", .read = read_obj, .variant = variant_of};
+const ScanFormat kObjFormat = {.extension = ".obj",
+                               .read = read_obj,
+                               .variant = variant_of,
+                               .content = "meshes",
+                               .variants = ""};
 
 }  // namespace semigeo::io

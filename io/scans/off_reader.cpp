@@ -304,6 +304,10 @@ std::string variant_of(std::string_view begin) {
 
 }  // namespace
 
-const ScanFormat kOffFormat = {.extension = ".off", .read = read_off, .variant = variant_of};
+const ScanFormat kOffFormat = {.extension = ".off",
+                               .read = read_off,
+                               .variant = variant_of,
+                               .content = "meshes",
+                               .variants = "text, binary"};
 
 }  // namespace semigeo::io

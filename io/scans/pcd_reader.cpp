@@ -165,6 +165,10 @@ std::string variant_of(std::string_view begin) {
 
 }  // namespace
 
-const ScanFormat kPcdFormat = {.extension = ".pcd", .read = read_pcd, .variant = variant_of};
+const ScanFormat kPcdFormat = {.extension = ".pcd",
+                               .read = read_pcd,
+                               .variant = variant_of,
+                               .content = "range grids",
+                               .variants = "ascii, binary, binary_compressed"};
 
 }  // namespace semigeo::io

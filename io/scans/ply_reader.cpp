@@ -260,6 +260,10 @@ std::string variant_of(std::string_view begin) {
 
 }  // namespace
 
-const ScanFormat kPlyFormat = {.extension = ".ply", .read = read_ply, .variant = variant_of};
+const ScanFormat kPlyFormat = {.extension = ".ply",
+                               .read = read_ply,
+                               .variant = variant_of,
+                               .content = "meshes, triangle strips, range grids",
+                               .variants = "ascii, binary of either byte order"};
 
 }  // namespace semigeo::io

@@ -126,6 +126,10 @@ std::string variant_of(std::string_view) {
 
 }  // namespace
 
-const ScanFormat kPtxFormat = {.extension = ".ptx", .read = read_ptx, .variant = variant_of};
+const ScanFormat kPtxFormat = {.extension = ".ptx",
+                               .read = read_ptx,
+                               .variant = variant_of,
+                               .content = "range grids",
+                               .variants = ""};
 
 }  // namespace semigeo::io

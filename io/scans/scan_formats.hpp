@@ -18,6 +18,8 @@ struct ScanFormat {
   /// Returns the variant of the format that the first bytes of a file show: "PLY ascii". Files of
   /// one variant need about the same time and memory for each byte.
   std::string (*variant)(std::string_view begin);
+  std::string_view content;   ///< What is read, for people: "meshes, range grids".
+  std::string_view variants;  ///< Which variants are read, for people; empty if there is one.
 };
 
 // Each is defined by its reader.

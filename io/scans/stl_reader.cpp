@@ -209,6 +209,10 @@ std::string variant_of(std::string_view begin) {
 
 }  // namespace
 
-const ScanFormat kStlFormat = {.extension = ".stl", .read = read_stl, .variant = variant_of};
+const ScanFormat kStlFormat = {.extension = ".stl",
+                               .read = read_stl,
+                               .variant = variant_of,
+                               .content = "meshes",
+                               .variants = "ascii, binary"};
 
 }  // namespace semigeo::io

@@ -462,6 +462,10 @@ std::string variant_of(std::string_view begin) {
 
 }  // namespace
 
-const ScanFormat kVtkFormat = {.extension = ".vtk", .read = read_vtk, .variant = variant_of};
+const ScanFormat kVtkFormat = {.extension = ".vtk",
+                               .read = read_vtk,
+                               .variant = variant_of,
+                               .content = "meshes, triangle strips",
+                               .variants = "legacy VTK, ascii or binary, of version 5.1 or older"};
 
 }  // namespace semigeo::io

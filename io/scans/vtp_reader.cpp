@@ -177,6 +177,11 @@ std::string variant_of(std::string_view) {
 
 }  // namespace
 
-const ScanFormat kVtpFormat = {.extension = ".vtp", .read = read_vtp, .variant = variant_of};
+const ScanFormat kVtpFormat = {
+    .extension = ".vtp",
+    .read = read_vtp,
+    .variant = variant_of,
+    .content = "meshes, triangle strips",
+    .variants = "XML of VTK: ascii, binary or appended arrays, plain or compressed by ZLib"};
 
 }  // namespace semigeo::io

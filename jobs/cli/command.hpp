@@ -21,6 +21,7 @@ void add_prune(CLI::App& app, int& exit_code);
 void add_report(CLI::App& app, int& exit_code);
 void add_picture(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
+void add_formats(CLI::App& app, int& exit_code);
 void add_bench(CLI::App& app, int& exit_code);
 
 /// Adds a hidden command that prints docs/options.md from the options that the other commands have.

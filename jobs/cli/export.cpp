@@ -1,106 +1,208 @@
+#include <algorithm>
+#include <filesystem>
 #include <memory>
+#include <sstream>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "io/dataset/dataset.hpp"
-#include "io/dataset/dataset_header.hpp"
+#include "io/files/atomic_file.hpp"
 #include "io/files/error.hpp"
-#include "io/files/lower_case.hpp"
-#include "io/scans/feature_writer.hpp"
-#include "io/scans/mesh_writer.hpp"
+#include "jobs/archive/in_children.hpp"
+#include "jobs/cli/choice.hpp"
 #include "jobs/cli/chosen_level.hpp"
 #include "jobs/cli/command.hpp"
+#include "jobs/cli/datasets.hpp"
+#include "jobs/cli/export_level.hpp"
 #include "jobs/cli/output.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {
 
-using kernels::FeatureKind;
-using kernels::kFeatureKindNames;
-using kernels::kFeatureKinds;
+namespace fs = std::filesystem;
 
 struct ExportOptions {
-  std::string dataset;
+  std::string source;  ///< A dataset, or an archive.
   int level = 0;
+  std::string levels;  ///< "0,2,4", "all", or empty.
   std::string output;
-  std::string quality = "mean_curvature";
-  std::string features;  ///< A kind of feature, or "all".
-  std::string contours;  ///< A kind of contour.
+  std::string format;  ///< An extension without its dot, or empty.
+  LevelExport what;
 };
 
-enum class OutputFormat { kPly, kCsv };
-
-/// Returns the format that the extension names. A surface cannot be written as CSV.
-OutputFormat format_of(const ExportOptions& options) {
-  const bool surface = options.features.empty() && options.contours.empty();
-  const std::string extension =
-      io::lower_case(std::filesystem::path(options.output).extension().string());
-  if (extension == ".ply") return OutputFormat::kPly;
-  if (extension == ".csv" && !surface) return OutputFormat::kCsv;
-  throw CLI::ValidationError("--output", options.output + " does not say how to write it: " +
-                                             (surface ? "give a name that ends in .ply"
-                                                      : "give a name that ends in .ply or .csv"));
+/// Returns the extensions that can be written, for a message: ".ply or .csv".
+std::string extensions_for(const LevelExport& what) {
+  std::vector<std::string> extensions;
+  for (const ExportFormatInfo& format : kExportFormats)
+    if (what.is_surface() ? format.surfaces : format.tables)
+      extensions.emplace_back(format.extension);
+  std::string text;
+  for (std::size_t i = 0; i < extensions.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == extensions.size() ? " or " : ", ") + extensions[i];
+  return text;
 }
 
-void export_features(const io::Dataset& dataset, const ExportOptions& options,
-                     OutputFormat format) {
-  const auto features = dataset.read_features(options.level);
-  std::vector<io::FeaturesView> tables;
+/// Sets the format that an extension names. A surface cannot be written as CSV.
+void choose_format(LevelExport& what, const std::string& extension, const char* option,
+                   const std::string& given) {
+  const auto format = format_of_extension(extension);
+  const bool fits =
+      format && (what.is_surface() ? kExportFormats[static_cast<std::size_t>(*format)].surfaces
+                                   : kExportFormats[static_cast<std::size_t>(*format)].tables);
+  if (!fits)
+    throw CLI::ValidationError(option, given +
+                                           " does not say how to write it: give a name that "
+                                           "ends in " +
+                                           extensions_for(what));
+  what.format = *format;
+}
+
+/// Returns the extension that files in a folder get without --format.
+std::string usual_extension(const LevelExport& what) {
+  if (!what.is_surface()) return ".csv";
+  return what.dialect == Dialect::kParaview ? ".vtp" : ".ply";
+}
+
+/// Returns the levels that --levels names in a dataset.
+std::vector<int> levels_of(const ExportOptions& options, const io::Dataset& dataset) {
+  std::vector<int> levels;
+  if (options.levels == "all") {
+    for (int level = 0; level < dataset.level_count(); ++level) levels.push_back(level);
+    return levels;
+  }
+  if (options.levels.empty()) return {options.level};
+  std::istringstream list(options.levels);
+  for (std::string number; std::getline(list, number, ',');) levels.push_back(std::stoi(number));
+  return levels;
+}
+
+/// Returns what is wrong with the text of --levels, or an empty string.
+std::string levels_problem(const std::string& text) {
+  if (text == "all") return "";
+  constexpr std::size_t kMostDigits = 3;
+  std::istringstream list(text);
   std::size_t count = 0;
-  for (int kind = 0; kind < kFeatureKinds; ++kind) {
-    if (options.features != "all" && options.features != kFeatureKindNames[kind]) continue;
-    tables.push_back({FeatureKind(kind), features[kind]});
-    count += features[kind].size();
+  for (std::string number; std::getline(list, number, ','); ++count)
+    if (number.empty() || number.size() > kMostDigits ||
+        number.find_first_not_of("0123456789") != std::string::npos)
+      return "give numbers of levels with commas between them (0,2,4), or all";
+  return count == 0 || text.back() == ',' ? "give levels" : "";
+}
+
+/// Returns the name of a file in a folder: "a.ply.004.vtp", "a.ply.004.features.csv".
+std::string file_name(const fs::path& dataset, int level, const LevelExport& what) {
+  const std::string number = std::to_string(level);
+  std::string name = dataset.stem().string() + "." + std::string(3 - number.size(), '0') + number;
+  if (!what.features.empty()) name += ".features";
+  if (!what.contours.empty()) name += ".contours";
+  return name + std::string(kExportFormats[static_cast<std::size_t>(what.format)].extension);
+}
+
+/// Exports the levels of a dataset into a folder. Returns lines for people.
+std::string export_dataset(const fs::path& path, const ExportOptions& options) {
+  const io::Dataset dataset(path);
+  const std::vector<int> levels = levels_of(options, dataset);
+  for (const int level : levels) require_level(dataset, level);
+  std::string lines;
+  for (const int level : levels)
+    lines +=
+        export_level(dataset, level,
+                     fs::path(options.output) / file_name(path, level, options.what), options.what);
+  return lines;
+}
+
+/// CPU seconds that a dataset may take: far more than it needs. HDF5 never ends over some damaged
+/// files.
+double most_seconds(const fs::path& dataset) {
+  constexpr double kLeast = 60;
+  constexpr double kBytesPerSecond = 1e6;
+  std::error_code error;
+  const auto bytes = fs::file_size(dataset, error);
+  return kLeast + (error ? 0 : static_cast<double>(bytes) / kBytesPerSecond);
+}
+
+/// Exports datasets into a folder, each in a child process: what one of them does stops no other.
+int export_all(const ExportOptions& options, const std::vector<fs::path>& datasets) {
+  std::error_code error;
+  fs::create_directories(options.output, error);
+  if (error) throw io::Error(options.output, "", "cannot be made: " + error.message());
+  constexpr char kDone = '+';
+  constexpr char kFailed = '-';
+  const auto work = [&](std::size_t i) {
+    try {
+      return kDone + export_dataset(datasets[i], options);
+    } catch (const std::exception& e) {
+      return kFailed + std::string(e.what());
+    }
+  };
+  const auto results = in_children(datasets.size(), 0, work,
+                                   [&](std::size_t i) { return most_seconds(datasets[i]); });
+  std::size_t failed = 0;
+  for (std::size_t i = 0; i < datasets.size(); ++i) {
+    const std::string& text = results[i].text;
+    if (results[i].exit_code == 0 && text.starts_with(kDone)) {
+      print_text(text.substr(1));
+      continue;
+    }
+    ++failed;
+    if (text.starts_with(kFailed)) {
+      complain(text.substr(1));
+    } else {
+      complain(io::Error(datasets[i], "",
+                         "was not read to its end: the process that read it crashed or was ended",
+                         "check the archive: semigeo check ARCHIVE"));
+    }
   }
-  const auto write = format == OutputFormat::kPly ? io::write_features_ply : io::write_features_csv;
-  write(options.output, tables, dataset.header().origin);
-  print(options.output, ": ", count, " features, kind = ", options.features, "\n");
+  io::remove_stale_partials(options.output);
+  if (datasets.size() > 1)
+    print(datasets.size() - failed, " datasets exported, ", failed, " failed\n");
+  return failed == 0 ? kAllDone : kSomeFailed;
 }
 
-void export_contours(const io::Dataset& dataset, const ExportOptions& options,
-                     OutputFormat format) {
-  const bool gaussian = options.contours == kFeatureKindNames[0];
-  const kernels::SampledContours contours =
-      dataset.read_contours(options.level, gaussian ? FeatureKind::kGaussian : FeatureKind::kMean);
-  const auto write = format == OutputFormat::kPly ? io::write_contours_ply : io::write_contours_csv;
-  write(options.output, contours, dataset.header().origin);
-  print(options.output, ": ", contours.closed.size(), " contours ", gaussian ? "K" : "H", " = 0, ",
-        contours.points.size(), " points\n");
+/// Returns whether the output is a folder for files of several levels or datasets.
+bool has_folder(const ExportOptions& options) {
+  std::error_code error;
+  return !options.levels.empty() || fs::is_directory(options.source, error) ||
+         fs::is_directory(options.output, error) || options.output.ends_with('/');
 }
 
-void export_surface(const io::Dataset& dataset, const ExportOptions& options) {
-  if (options.quality.starts_with("principal") && !dataset.has_principal())
-    throw io::Error(options.dataset, "", "has no principal curvatures",
-                    "run with --principal, or export another --quality");
-  const auto points = dataset.read_floats(options.level, "points");
-  const auto normals = dataset.read_floats(options.level, "normals");
-  const auto triangles = dataset.read_integers(options.level, "triangles");
-  const auto gaussian = dataset.read_floats(options.level, "gaussian_curvature");
-  const auto mean = dataset.read_floats(options.level, "mean_curvature");
-  const auto quality = dataset.read_floats(options.level, options.quality);
-  io::MeshView mesh;
-  mesh.points = points;
-  mesh.normals = normals;
-  mesh.triangles = triangles;
-  mesh.scalars = {{"gaussian_curvature", gaussian}, {"mean_curvature", mean}, {"quality", quality}};
-  mesh.origin = dataset.header().origin;
-  io::write_ply(options.output, mesh);
-  print(options.output, ": ", points.size() / 3, " vertices, ", triangles.size() / 3,
-        " triangles, quality = ", options.quality, "\n");
-}
-
-int export_level(const ExportOptions& options) {
-  const OutputFormat format = format_of(options);
-  const io::Dataset dataset(options.dataset);
+int export_source(ExportOptions options) {
+  if (has_folder(options)) {
+    const std::string extension =
+        options.format.empty() ? usual_extension(options.what) : "." + options.format;
+    choose_format(options.what, extension, "--format", options.format);
+    return export_all(options, datasets_at(options.source));
+  }
+  const std::string extension =
+      options.format.empty() ? fs::path(options.output).extension().string() : "." + options.format;
+  choose_format(options.what, extension, "--output", options.output);
+  const io::Dataset dataset(options.source);
   require_level(dataset, options.level);
-  if (!options.features.empty()) {
-    export_features(dataset, options, format);
-  } else if (!options.contours.empty()) {
-    export_contours(dataset, options, format);
-  } else {
-    export_surface(dataset, options);
-  }
+  print_text(export_level(dataset, options.level, options.output, options.what));
   return kAllDone;
+}
+
+void add_content_options(CLI::App& command, LevelExport& what) {
+  CLI::Option* quality =
+      command
+          .add_option("--quality", what.quality,
+                      "Field that becomes `quality`, and that colours show")
+          ->check(CLI::IsMember({"gaussian_curvature", "mean_curvature", "patch_completeness",
+                                 "principal_curvature_1", "principal_curvature_2"}));
+  CLI::Option* features =
+      command
+          .add_option("--features", what.features,
+                      "Features of this kind instead of the surface: maxima of |K|, of |H|, of "
+                      "torsion along K = 0, along H = 0")
+          ->check(CLI::IsMember({"gaussian", "mean", "gaussian_torsion", "mean_torsion", "all"}))
+          ->excludes(quality);
+  command
+      .add_option("--contours", what.contours,
+                  "Contours K = 0 (gaussian) or H = 0 (mean) instead of the surface")
+      ->check(CLI::IsMember({"gaussian", "mean"}))
+      ->excludes(quality)
+      ->excludes(features);
 }
 
 }  // namespace
@@ -109,37 +211,38 @@ void add_export(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ExportOptions>();
   CLI::App* command = app.add_subcommand(
       "export",
-      "Write one level as a binary PLY with normals and curvatures, or its features or contours");
+      "Write levels of a dataset or an archive for other programs: surfaces, features, "
+      "contours");
   command->footer(
       "Examples:\n"
       "  semigeo export archive/scans/x.ply.vtkhdf --level 4 --output smooth.ply\n"
       "  semigeo export archive/scans/x.ply.vtkhdf --output k.ply --quality gaussian_curvature\n"
       "  semigeo export archive/scans/x.ply.vtkhdf --level 4 --features all --output f.csv\n"
       "  semigeo export archive/scans/x.ply.vtkhdf --level 4 --contours mean --output lines.ply\n"
+      "  semigeo export archive --levels 0,4,8 --for cloudcompare --output folder\n"
+      "  semigeo export archive --levels all --format npz --output folder\n"
       "\n"
-      "The `quality` is what MeshLab and CloudCompare colour by. Features and contours are\n"
-      "written as PLY (points; points and edges) or CSV, by the extension of --output.\n");
-  command->add_option("dataset", options->dataset, "A dataset")->required();
-  command->add_option("--level", options->level, "Scale level")->check(CLI::Range(0, 999));
-  command->add_option("-o,--output", options->output, "The file to write")->required();
-  CLI::Option* quality =
-      command->add_option("--quality", options->quality, "Field that becomes `quality`")
-          ->check(CLI::IsMember({"gaussian_curvature", "mean_curvature", "patch_completeness",
-                                 "principal_curvature_1", "principal_curvature_2"}));
-  CLI::Option* features =
-      command
-          ->add_option("--features", options->features,
-                       "Features of this kind instead of the surface: maxima of |K|, of |H|, of "
-                       "torsion along K = 0, along H = 0")
-          ->check(CLI::IsMember({"gaussian", "mean", "gaussian_torsion", "mean_torsion", "all"}))
-          ->excludes(quality);
+      "The extension of --output says the format; `semigeo formats` lists them. Of an archive or\n"
+      "of several levels, --output is a folder, and files are named after dataset and level:\n"
+      "x.ply.004.ply. A dataset that cannot be exported does not stop the others.\n");
+  command->add_option("dataset", options->source, "A dataset, or an archive")->required();
+  CLI::Option* level =
+      command->add_option("--level", options->level, "Scale level")->check(CLI::Range(0, 999));
+  command->add_option("--levels", options->levels, "Several levels: 0,2,4, or all of them: all")
+      ->check(CLI::Validator(levels_problem, ""))
+      ->excludes(level);
+  command->add_option("-o,--output", options->output, "The file or folder to write")->required();
   command
-      ->add_option("--contours", options->contours,
-                   "Contours K = 0 (gaussian) or H = 0 (mean) instead of the surface")
-      ->check(CLI::IsMember({"gaussian", "mean"}))
-      ->excludes(quality)
-      ->excludes(features);
-  command->callback([options, &exit_code] { exit_code = export_level(*options); });
+      ->add_option("--format", options->format,
+                   "Format of files in a folder; without it .ply, .vtp for paraview, .csv for "
+                   "features and contours")
+      ->check(CLI::IsMember({"ply", "obj", "stl", "glb", "vtp", "npz", "csv"}));
+  add_choice(*command, "--for", options->what.dialect, kDialectNames,
+             "Program that will read it: fields under its names, and colours where it has them");
+  add_choice(*command, "--colours", options->what.scale, kColourScaleNames,
+             "Colours of --quality: safe for all kinds of sight, or those of the thesis");
+  add_content_options(*command, options->what);
+  command->callback([options, &exit_code] { exit_code = export_source(*options); });
 }
 
 }  // namespace semigeo::jobs::cli

@@ -49,7 +49,9 @@ int run(int argc, char** argv) {
       "  semigeo check archive                   is every byte as it was written?\n"
       "  semigeo prune archive                   remove what is of scans that are gone\n"
       "  semigeo recognise scene.ply --library archive   which models are in it, and where\n"
+      "  semigeo picture archive/scans/x.ply.vtkhdf --output x.png\n"
       "  semigeo export archive/scans/x.ply.vtkhdf --level 4 --output smooth.ply\n"
+      "  semigeo formats                         what is read and written\n"
       "  semigeo bench                           how fast is this machine?\n");
   app.set_version_flag("--version", version);
   app.set_config("--config", "", "Read options from a TOML file like archive/semigeo.toml");
@@ -78,6 +80,7 @@ int run(int argc, char** argv) {
   add_report(app, exit_code);
   add_picture(app, exit_code);
   add_export(app, exit_code);
+  add_formats(app, exit_code);
   add_bench(app, exit_code);
   add_job(app, exit_code);
   add_options_page(app);

@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <cmath>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +7,7 @@
 #include "io/files/error.hpp"
 #include "io/files/lower_case.hpp"
 #include "io/files/png.hpp"
+#include "jobs/cli/choice.hpp"
 #include "jobs/cli/chosen_level.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/output.hpp"
@@ -64,22 +62,6 @@ int make_picture(PictureCommand& command) {
     print(", colours from ", -picture.limit, " to ", picture.limit);
   print("\n");
   return kAllDone;
-}
-
-/// Adds an option that takes one of the words, whose place is the value.
-template <typename Value, std::size_t N>
-CLI::Option* add_choice(CLI::App& app, const std::string& name, Value& value,
-                        const std::array<std::string_view, N>& words, const std::string& help) {
-  const std::vector<std::string> all(words.begin(), words.end());
-  return app
-      .add_option_function<std::string>(
-          name,
-          [&value, all](const std::string& word) {
-            value = static_cast<Value>(std::ranges::find(all, word) - all.begin());
-          },
-          help)
-      ->default_str(all[static_cast<std::size_t>(value)])
-      ->check(CLI::IsMember(all));
 }
 
 }  // namespace

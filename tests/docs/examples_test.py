@@ -14,8 +14,8 @@ sys.path.insert(0, str(REPOSITORY / "tests/e2e"))
 from support import PROGRAM, TIMEOUT, SemigeoTest, boulder, joined, write_ply
 from pages import split_blocks
 
-PAGES = ("README.md", "docs/usage.md", "docs/recognition.md", "docs/pictures.md", "docs/python.md")
-COMMANDS = ("run", "recognise", "export", "picture", "info", "status", "check", "library", "prune")
+PAGES = ("README.md", "docs/usage.md", "docs/recognition.md", "docs/pictures.md", "docs/export.md", "docs/python.md")
+COMMANDS = ("run", "recognise", "export", "picture", "formats", "info", "status", "check", "library", "prune")
 
 
 def runnable_blocks(page):
@@ -65,6 +65,10 @@ class ExamplesTest(SemigeoTest):
     def test_pictures(self):
         self.run_block("sh", "semigeo run scans --output archive")
         self.assertIn("pixels, colours from", self.run_page("docs/pictures.md")[0])
+
+    def test_export(self):
+        self.run_block("sh", "semigeo run scans --output archive --unit mm")
+        self.assertRegex(self.run_page("docs/export.md")[-1], r"^[0-9.]+ mm -[0-9.]+")
 
     def test_python(self):
         self.run_block("sh", "semigeo run scans --output archive --library")

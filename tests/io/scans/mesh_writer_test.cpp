@@ -2,6 +2,10 @@
 
 #include <iterator>
 
+#include "io/scans/glb_writer.hpp"
+#include "io/scans/obj_writer.hpp"
+#include "io/scans/stl_writer.hpp"
+#include "io/scans/vtp_writer.hpp"
 #include "tests/io/scans/scan_files.hpp"
 #include "tests/support/file_size_limit.hpp"
 
@@ -27,6 +31,40 @@ TEST_F(MeshWriter, WritesWhatTheReaderReads) {
   EXPECT_EQ(scan.format, "PLY binary little endian");
   EXPECT_EQ(point(scan, 2), Eigen::Vector3d(0, 1, -0.25));
   EXPECT_EQ(scan.mesh.triangles, (Triangles{{2, 0, 1}}));
+}
+
+TEST_F(MeshWriter, OtherFormatsAreReadBack) {
+  const std::vector<float> curvature = {1, 2, 3};
+  const std::vector<std::int64_t> part = {7, 8, 9};
+  const std::vector<std::uint8_t> colours = {0, 128, 255, 1, 2, 3, 4, 5, 6};
+  const MeshView mesh = {.points = points_,
+                         .normals = normals_,
+                         .triangles = triangles_,
+                         .scalars = {{"mean_curvature", curvature}},
+                         .origin = {1000, 0, 0},
+                         .colours = colours,
+                         .integers = {{"part", part}}};
+  write_ply(path_, mesh);
+  write_obj(folder_ / "mesh.obj", mesh, "comment");
+  write_vtp(folder_ / "mesh.vtp", mesh);
+  write_glb(folder_ / "mesh.glb", mesh, "m");
+  for (const char* name : {"mesh.ply", "mesh.obj", "mesh.vtp", "mesh.glb"}) {
+    const Scan scan = read_scan(folder_ / name);
+    EXPECT_EQ(point(scan, 1), Eigen::Vector3d(1001.5, 0, 0)) << name;
+    EXPECT_EQ(scan.mesh.triangles, (Triangles{{2, 0, 1}})) << name;
+  }
+  write_stl(folder_ / "mesh.stl", mesh);
+  EXPECT_EQ(read_scan(folder_ / "mesh.stl").mesh.points.size(), 3);
+}
+
+TEST_F(MeshWriter, OtherFormatsRefuseWhatIsNoMesh) {
+  const std::vector<std::int64_t> outside = {0, 1, 3};
+  const MeshView mesh = {.points = points_, .normals = {}, .triangles = outside, .scalars = {}};
+  EXPECT_THROW(write_obj(path_, mesh, ""), Error);
+  EXPECT_THROW(write_stl(path_, mesh), Error);
+  EXPECT_THROW(write_vtp(path_, mesh), Error);
+  EXPECT_THROW(write_glb(path_, mesh, ""), Error);
+  EXPECT_FALSE(std::filesystem::exists(path_));
 }
 
 TEST_F(MeshWriter, WritesNormalsAndNamedScalarsByteByByte) {
