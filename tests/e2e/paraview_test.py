@@ -12,10 +12,10 @@ from support import SemigeoTest, icosphere, write_ply
 PARAVIEW = """
 import sys
 from paraview.simple import *
-reader = OpenDataFile(sys.argv[1])
+reader = XDMFReader(FileNames=[sys.argv[1]])
 reader.UpdatePipeline()
 steps = list(reader.TimestepValues)
-names = sorted(reader.PointData.keys())
+names = sorted(reader.PointArrayStatus)
 points = []
 for step in steps:
     reader.UpdatePipeline(step)
