@@ -147,20 +147,22 @@ void scalar_perpendiculars(const BlockSurface& surface, const BlockRay& ray, Blo
 
 }  // namespace lanes
 
-void evolve_vertices(const SampledSurface& surface, std::span<const std::int32_t> first,
-                     const PatchLayout& layout, InstructionSet set,
-                     std::span<EvolvedVertex> results) {
+std::int64_t evolve_vertices(const SampledSurface& surface, std::span<const std::int32_t> first,
+                             const PatchLayout& layout, InstructionSet set,
+                             std::span<EvolvedVertex> results) {
   using namespace lanes;
   const GeodesicMesh& mesh = surface.mesh;
   TraceBlock* const trace = trace_block_of(set);
+  std::int64_t left_to_scalar = 0;
   const auto by_scalar = [&](std::size_t i) {
+    ++left_to_scalar;
     PatchLayout own = layout;
     own.first = first[i];
     results[i] = evolve_vertex(surface, mesh.origin(first[i]), own);
   };
   if (trace == nullptr || mesh.max_crossings > kMostCrossings) {
     for (std::size_t i = 0; i < first.size(); ++i) by_scalar(i);
-    return;
+    return left_to_scalar;
   }
   BlockWorkspace& work = workspace();
   const bool polar = layout.coordinates == Coordinates::kPolar;
@@ -194,6 +196,7 @@ void evolve_vertices(const SampledSurface& surface, std::span<const std::int32_t
             evolved_vertex(surface, work.vertex[i], layout, estimate_of(work.block, i, layout));
     }
   }
+  return left_to_scalar;
 }
 
 }  // namespace semigeo::kernels

@@ -164,6 +164,22 @@ TEST_P(EvolveVerticesTest, EveryLayoutOfEveryMeshHasTheBytesOfTheScalarKernel) {
     }
 }
 
+TEST_P(EvolveVerticesTest, HardlyAnyVertexOfAScanIsLeftToTheScalarKernel) {
+  const TriangleMesh smooth = shapes::torus(1, 0.4, 80, 32);
+  for (const TriangleMesh& mesh : {smooth, noisy(smooth, 0.01), shapes::plane(2, 40)}) {
+    PreparedSurface s(mesh);
+    const auto step = static_cast<float>(mean_edge_length(s.surface));
+    s.sharpen_normals(step);
+    const std::vector<std::int32_t> first = first_edges(s.sampled());
+    std::vector<EvolvedVertex> results(first.size());
+    const auto left = evolve_vertices(s.sampled(), first, {.step = step}, GetParam(), results);
+    if (GetParam() == InstructionSet::kScalar)
+      EXPECT_EQ(left, std::ssize(first));
+    else
+      EXPECT_LE(left, std::ssize(first) / 500);
+  }
+}
+
 TEST_P(EvolveVerticesTest, AnyFirstEdgeAndAnyOrderOfVertices) {
   PreparedSurface s(noisy(shapes::torus(1, 0.4, 40, 16, 0.5), 0.01));
   const auto step = static_cast<float>(mean_edge_length(s.surface));
