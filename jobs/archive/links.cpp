@@ -7,8 +7,9 @@ namespace semigeo::jobs {
 namespace fs = std::filesystem;
 
 void refuse_links(const fs::path& home) {
-  for (const char* name : {"scans", "logs", "library", "library/triplets", "library/partitions",
-                           "triplets", "partitions", "recognised", "slurm"}) {
+  for (const char* name :
+       {"scans", "logs", "library", "library/triplets", "library/partitions", "triplets",
+        "partitions", "recognised", "report", "report/scans", "report/scenes", "slurm"}) {
     const fs::path folder = home / name;
     std::error_code ignored;
     if (fs::is_symlink(fs::symlink_status(folder, ignored)))

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "jobs/archive/links.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/failures.hpp"
 #include "jobs/cli/json_output.hpp"
@@ -82,7 +83,10 @@ int report(ReportOptions& options) {
   const TemporaryFolder temporary;
   ReportPlace& place = options.place;
   place.archive = fs::absolute(place.archive).lexically_normal();
-  if (place.folder.empty()) place.folder = report_folder(place.archive);
+  if (place.folder.empty()) {
+    place.folder = report_folder(place.archive);
+    refuse_links(place.archive);
+  }
   place.folder = fs::absolute(place.folder).lexically_normal();
   return run_plan(options.execution,
                   {.home = temporary.path(),

@@ -1,7 +1,5 @@
 // Small charts as SVG. The colours come from the style of the page.
 
-// Narrow pages get narrow charts, so that their texts stay readable.
-const width = Math.max(300, Math.min(640, window.innerWidth - 40));
 const height = 180;
 const left = 64;
 const right = 12;
@@ -26,19 +24,24 @@ export interface Axis {
 }
 
 export interface Chart {
+  /// Width in units of a letter's height of 12; 640 if there is none.
+  width?: number;
   /// The chart in one sentence, for those who do not see it.
   sentence: string;
   x: Axis;
   y: Axis;
 }
 
+/// Narrow pages get narrow charts, so that their texts stay readable.
+const widthOf = (chart: Chart): number => Math.max(300, Math.min(chart.width ?? 640, window.innerWidth - 40));
 const placeX = (chart: Chart, x: number): number =>
-  left + (width - left - right) * (x - chart.x.low) / (chart.x.high - chart.x.low || 1);
+  left + (widthOf(chart) - left - right) * (x - chart.x.low) / (chart.x.high - chart.x.low || 1);
 const placeY = (chart: Chart, y: number): number =>
   height - bottom - (height - top - bottom) * (y - chart.y.low) / (chart.y.high - chart.y.low || 1);
 
 /// Returns the empty chart with its axes.
 function frame(chart: Chart): SVGElement {
+  const width = widthOf(chart);
   const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
   svg.setAttribute("role", "img");
@@ -67,6 +70,7 @@ export interface Point {
 
 /// Returns a line through points, with a dot at each if there are few, and a mark at one of them.
 export function lineChart(chart: Chart, points: Point[], mark?: { place: number; text: string }): SVGElement {
+  const width = widthOf(chart);
   const svg = frame(chart);
   const places = points.map(p => `${placeX(chart, p.x).toFixed(1)},${placeY(chart, p.y).toFixed(1)}`);
   draw(svg, "polyline", { points: places.join(" "), class: "line" });
@@ -86,6 +90,7 @@ export function lineChart(chart: Chart, points: Point[], mark?: { place: number;
 
 /// Returns a line through the heights of equal steps, with the area below it.
 export function areaChart(chart: Chart, heights: number[]): SVGElement {
+  const width = widthOf(chart);
   const svg = frame(chart);
   const step = (chart.x.high - chart.x.low) / heights.length;
   const places: string[] = [];
@@ -101,6 +106,7 @@ export function areaChart(chart: Chart, heights: number[]): SVGElement {
 
 /// Returns bars of equal width, and a line at zero of the horizontal axis.
 export function barChart(chart: Chart, heights: number[]): SVGElement {
+  const width = widthOf(chart);
   const svg = frame(chart);
   const step = (width - left - right) / heights.length;
   heights.forEach((y, i) => {

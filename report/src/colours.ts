@@ -28,8 +28,8 @@ export function colourOf(palette: Palette, value: number): Colour {
   return between(stops[palette], (value + 1) / 2);
 }
 
-// From dark blue over green to yellow: lightness alone tells near from far.
-const distances: Colour[] = [[0.1, 0.13, 0.42], [0.12, 0.42, 0.56], [0.2, 0.64, 0.47], [0.6, 0.83, 0.27], [0.99, 0.91, 0.15]];
+// From pale over orange to dark purple: lightness alone tells near from far.
+const distances: Colour[] = [[0.92, 0.93, 0.9], [0.98, 0.78, 0.45], [0.91, 0.45, 0.24], [0.66, 0.15, 0.33], [0.28, 0.05, 0.36]];
 
 /// Returns the colour of a distance between 0 and 1, as a share of the largest.
 export function distanceColour(share: number): Colour {

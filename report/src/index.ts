@@ -83,6 +83,7 @@ const stateWords: Record<State, string> = {
   done: "✓ done",
 };
 const failuresAtFirst = 20;
+const namesAtFirst = 12;
 const manyRows = 400;
 
 function numeric(title: string, explanation: string, value: (scan: Scan) => number | undefined,
@@ -105,9 +106,10 @@ const columns: Column[] = [
   { title: "Unit", explanation: "Unit of length", numeric: false, value: s => s.unit, text: s => s.unit ?? none },
   numeric("Vertices", "Vertices of level 0", s => s.vertices),
   numeric("Parts", "Connected parts of level 0", s => s.parts),
-  { title: "Repairs", explanation: "What was repaired or left out; sorted by the number of repairs", numeric: false,
+  { title: "Repairs", explanation: "What was repaired or left out, or why there is nothing; sorted by the number of repairs", numeric: false,
     value: s => s.repairs && Object.values(s.repairs).reduce((sum, count) => sum + count, 0),
-    text: s => s.repairs ? countsText(s.repairs) || "none" : none, className: "repairs" },
+    text: s => s.repairs ? countsText(s.repairs) || "none" : s.reason ? reasonWithoutFile(s.title, s.reason) : none,
+    className: "repairs" },
   numeric("Levels", "Number of levels", s => s.levels),
   numeric("Recognised at", "Level at which the scan is recognised", s => s.level),
   numeric("Features", "Features at that level", s => s.features),
@@ -157,19 +159,48 @@ function showTotals(): void {
   }
 }
 
-function failureItem(failure: Failure): HTMLLIElement {
-  const item = make("li");
-  const name = make("p", "", "name");
-  const text = make("bdi", failure.job);
-  name.append(text);
-  const reason = make("p", failure.reason);
-  reason.dir = "auto";
-  item.append(name, reason);
-  if (failure.remedy) {
-    const remedy = make("p", `What to do: ${failure.remedy}`, "remedy");
-    remedy.dir = "auto";
-    item.append(remedy);
+/// Failures that have the same reason, but for the name of the file, and the same remedy.
+function groupsOf(failures: Failure[]): Failure[][] {
+  const groups = new Map<string, Failure[]>();
+  for (const failure of failures) {
+    const key = `${reasonWithoutFile(failure.job, failure.reason)}\n${failure.remedy ?? ""}`;
+    const group = groups.get(key);
+    if (group) group.push(failure);
+    else groups.set(key, [failure]);
   }
+  return [...groups.values()];
+}
+
+/// Returns a reason without the file that it begins with, which has this name.
+function reasonWithoutFile(name: string, reason: string): string {
+  const at = reason.indexOf(`${name}: `);
+  return at < 0 ? reason : reason.slice(at + name.length + 2);
+}
+
+function textBlock(text: string, className = ""): HTMLParagraphElement {
+  const block = make("p", text, className);
+  block.dir = "auto";
+  return block;
+}
+
+/// Returns the item of a group, with some or all of its names.
+function failureItem(group: Failure[]): HTMLLIElement {
+  const item = make("li");
+  const names = make("p", "", "name");
+  const show = (count: number): void => {
+    names.replaceChildren();
+    group.slice(0, count).forEach((failure, place) => names.append(place ? ", " : "", make("bdi", failure.job)));
+    if (count >= group.length) return;
+    const button = make("button", `and ${wholeText(group.length - count)} more`);
+    button.type = "button";
+    button.addEventListener("click", () => show(group.length));
+    names.append(" ", button);
+  };
+  show(namesAtFirst);
+  const first = group[0];
+  const reason = group.length === 1 ? first.reason : `${wholeText(group.length)} times: ${reasonWithoutFile(first.job, first.reason)}`;
+  item.append(names, textBlock(reason));
+  if (first.remedy) item.append(textBlock(`What to do: ${first.remedy}`, "remedy"));
   return item;
 }
 
@@ -178,14 +209,15 @@ function showFailures(): void {
   if (failures.length === 0) return;
   element("failures").hidden = false;
   element("failures-title").textContent = `Failures (${wholeText(failures.length)})`;
+  const groups = groupsOf(failures);
   const list = element("failure-list");
-  list.append(...failures.slice(0, failuresAtFirst).map(failureItem));
-  if (failures.length <= failuresAtFirst) return;
+  list.append(...groups.slice(0, failuresAtFirst).map(failureItem));
+  if (groups.length <= failuresAtFirst) return;
   const button = element<HTMLButtonElement>("all-failures");
   button.hidden = false;
-  button.textContent = `Show all ${wholeText(failures.length)} failures`;
+  button.textContent = `Show all ${wholeText(groups.length)} reasons`;
   button.addEventListener("click", () => {
-    list.append(...failures.slice(failuresAtFirst).map(failureItem));
+    list.append(...groups.slice(failuresAtFirst).map(failureItem));
     button.hidden = true;
   });
 }

@@ -70,6 +70,7 @@ const contourKinds: Kind[] = [
   { name: "mean", title: "H = 0", mark: "╍╍", form: "circle", colour: "#d01c8b" },
 ];
 
+const chartWidth = 420;
 const scan = pageData<Scan>();
 const unit = scan.unit === "unknown" ? "" : scan.unit;
 const slider = element<HTMLInputElement>("level");
@@ -193,6 +194,7 @@ function showHistograms(): void {
     const sentence = `Number of vertices by ${field}, from ${curvatureText(field, -limit)} to ` +
       `${curvatureText(field, limit)}; ${wholeText(most)} in the highest of ${counts.length} bars`;
     return barChart({
+      width: chartWidth,
       sentence,
       x: { title: field === "H" ? "H, mean curvature" : "K, Gaussian curvature", low: -limit, high: limit,
         text: value => curvatureText(field, value) },
@@ -207,6 +209,7 @@ function showCurve(): void {
   const most = Math.max(...counts, 1);
   const chosen = `level ${scan.level}, ${wholeText(counts[scan.level])} features`;
   element("curve").append(lineChart({
+    width: chartWidth,
     sentence: `Number of features by sigma: ${wholeText(counts[0])} on level 0, ${wholeText(counts[counts.length - 1])} ` +
       `on level ${counts.length - 1}. Recognised at ${chosen}.`,
     x: { title: `sigma${unit ? `, ${unit}` : ""}`, low: scan.scales[0], high: scan.scales[counts.length - 1],

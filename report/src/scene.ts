@@ -120,6 +120,20 @@ function nearestModel(vertex: number): { place: number; share: number } | undefi
   return best;
 }
 
+/// The end of the colours as a share of the limit: the 98th percentile of the distances within it.
+function endOfColours(): number {
+  const nearest: number[] = [];
+  const count = residuals.find(one => one)?.length ?? 0;
+  for (let v = 0; v < count; ++v) {
+    const least = Math.min(...residuals.map(one => one ? one[v] : beyond));
+    if (least < beyond) nearest.push(least / (beyond - 1));
+  }
+  nearest.sort((a, b) => a - b);
+  return nearest[Math.floor(0.98 * (nearest.length - 1))] || 1;
+}
+
+const colourEnd = endOfColours();
+
 const sceneStyle = (): string => (document.querySelector("input[name=scene]:checked") as HTMLInputElement).value;
 
 function showScene(): void {
@@ -133,10 +147,11 @@ function showScene(): void {
   }
   view?.setColours(vertex => {
     const nearest = nearestModel(vertex);
-    return nearest ? distanceColour(nearest.share) : farColour;
+    return nearest ? distanceColour(nearest.share / colourEnd) : farColour;
   });
-  showLegend(distanceColour, "0", "distance of the scene from the models; farther: grey", lengthText(limit),
-    `Distance from 0 to ${lengthText(limit)}; what is farther from all models is grey`);
+  const end = lengthText(colourEnd * limit);
+  showLegend(distanceColour, "0", `distance from the models; grey: over ${lengthText(limit)}`, `≥ ${end}`,
+    `Distance of the scene from the models, from 0 to ${end}; what is farther than ${lengthText(limit)} is grey`);
 }
 
 function showModels(): void {

@@ -52,6 +52,8 @@ function pictureOf(form: Form, colour: string): CanvasTexture {
 }
 
 const fieldOfView = 35;
+/// Where the camera stands first, seen from the middle.
+const firstDirection = new Vector3(0.35, 0.3, 1);
 /// The surface is drawn this much farther away, in pixels of slope, so that marks of some pixels lie on top of it.
 const markClearance = 5;
 
@@ -88,7 +90,7 @@ export class SurfaceView {
   private readonly marks = new Map<string, Object3D>();
   private drawing: Drawing | undefined;
   private requested = false;
-  /// Where the camera stands, so that the first surface fills the view.
+  /// How far away the camera stands, so that the first surface fills the view.
   private distance = 0;
 
   /// Throws if the browser has no WebGL.
@@ -107,7 +109,7 @@ export class SurfaceView {
   }
 
   reset(): void {
-    this.camera.position.set(0.35, 0.3, 1).normalize().multiplyScalar(this.distance || 4);
+    this.camera.position.copy(firstDirection).normalize().multiplyScalar(this.distance || 4);
     this.controls.target.set(0, 0, 0);
     this.controls.update();
     this.request();
@@ -124,10 +126,7 @@ export class SurfaceView {
     if (this.mesh) this.remove(this.mesh);
     for (const name of [...this.marks.keys()]) this.setMark(name, undefined);
     if (!this.distance) {
-      let square = 0;
-      for (let p = 0; p < drawing.points.length; p += 3)
-        square = Math.max(square, drawing.points[p] ** 2 + drawing.points[p + 1] ** 2 + drawing.points[p + 2] ** 2);
-      this.distance = 1.03 * Math.sqrt(square || 1) / Math.sin(fieldOfView / 2 * Math.PI / 180);
+      this.distance = this.fittingDistance(drawing.points);
       this.reset();
     }
     const geometry = geometryOf(drawing.points);
@@ -234,6 +233,23 @@ export class SurfaceView {
     const distanceTo = (v: number): number => hit.point.distanceTo(new Vector3().fromBufferAttribute(points, v));
     const vertex = [hit.face.a, hit.face.b, hit.face.c].sort((a, b) => distanceTo(a) - distanceTo(b))[0];
     return { shape: hit.object === this.mesh ? undefined : hit.object.name, vertex };
+  }
+
+  /// Returns how far away the camera stands if it sees all points from where it looks first.
+  private fittingDistance(points: Float32Array): number {
+    const towards = firstDirection.clone().normalize();
+    const right = new Vector3().crossVectors(this.camera.up, towards).normalize();
+    const upwards = new Vector3().crossVectors(towards, right);
+    const slope = Math.tan(fieldOfView / 2 * Math.PI / 180);
+    const slopeAcross = slope * Math.max(1, this.camera.aspect);
+    const point = new Vector3();
+    let distance = 0;
+    for (let p = 0; p < points.length; p += 3) {
+      point.set(points[p], points[p + 1], points[p + 2]);
+      const needed = Math.max(Math.abs(point.dot(right)) / slopeAcross, Math.abs(point.dot(upwards)) / slope);
+      distance = Math.max(distance, point.dot(towards) + needed);
+    }
+    return 1.08 * distance || 4;
   }
 
   private setMark(name: string, mark: Object3D | undefined): void {

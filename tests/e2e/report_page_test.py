@@ -142,10 +142,17 @@ class ReportTest(SemigeoTest):
         for name in "abc":
             write_ply(self.scans / f"{name}.ply", boulder(3, ord(name)))
         self.run_scans("--levels", 1)
+        for fault in ("crash", "crash-once"):
+            process = self.semigeo("report", self.archive, "--json", "--retries", int(fault == "crash-once"),
+                                   code=int(fault == "crash"), env=dict(os.environ, SEMIGEO_TEST_FAULTS=f"page b.ply={fault}"))
+            told = json.loads(process.stdout)
+            self.assertEqual((told["pages_made"], told["pages_failed"]), (2, 1) if fault == "crash" else (1, 0))
+            if fault == "crash":
+                self.assertIn("crashed (signal 11", process.stderr)
         with open(self.dataset("b.ply"), "r+b") as file:  # damage behind the header
             file.seek(self.dataset("b.ply").stat().st_size // 2)
             file.write(b"\xff" * 4096)
-        process = self.semigeo("report", self.archive, "--json", code=1)
+        process = self.semigeo("report", self.archive, "--output", self.folder / "pages", "--json", code=1)
         told = json.loads(process.stdout)
         self.assertEqual((told["pages_made"], told["pages_failed"], told["scans"]), (2, 1, 3))
         scans = page_data(Path(told["report"]))["scans"]

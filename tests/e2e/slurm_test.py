@@ -108,6 +108,16 @@ class SlurmTest(SemigeoTest):
         self.assert_same_archives(self.archive, local)  # also: no traces of tasks are left
         self.assertEqual(self.run_scans("--library", "--levels", "2")["up_to_date"], 8)
 
+    def test_pages_are_made_by_tasks_too(self):
+        if subprocess.run([PROGRAM, "report", "/nonexistent"], capture_output=True).returncode == 2:
+            self.skipTest("this program has no report")
+        self.write_boulders(2)
+        document = self.on_slurm("--report", "--levels", "2")
+        self.assertEqual((document["done"], document["report"]["state"]), (5, "done"))
+        self.assertTrue((self.archive / "report/index.html").exists())
+        # The journal has the ends of the tasks' jobs since, so the first page may be made again.
+        self.assertGreaterEqual(self.run_scans("--report", "--levels", "2")["up_to_date"], 4)
+
     def test_a_scan_that_fails_costs_the_library_its_model_only(self):
         self.write_boulders(2)
         (self.scans / "bad.obj").write_text("v 0 0 0\nf 1 2 7\n")
