@@ -10,16 +10,40 @@
 
 namespace semigeo::io {
 
-ByteSource::ByteSource(const std::filesystem::path& path)
-    : path_(path), window_(std::make_unique_for_overwrite<char[]>(kWindowBytes)) {
+namespace {
+
+/// Lends a stream to an owner.
+class LentStream final : public ByteStream {
+ public:
+  explicit LentStream(ByteStream& stream) : stream_(stream) {}
+  const std::filesystem::path& path() const override { return stream_.path(); }
+  std::int64_t position() const override { return stream_.position(); }
+  std::size_t read(std::span<char> bytes) override { return stream_.read(bytes); }
+
+ private:
+  ByteStream& stream_;
+};
+
+}  // namespace
+
+ByteSource::ByteSource(const std::filesystem::path& path) : ByteSource(open_bytes(path)) {}
+
+ByteSource::ByteSource(ByteStream& stream) : ByteSource(std::make_unique<LentStream>(stream)) {}
+
+ByteSource::ByteSource(std::unique_ptr<ByteStream> given)
+    : path_(given->path()),
+      file_(std::move(given)),
+      raw_(*file_),
+      window_(std::make_unique_for_overwrite<char[]>(kWindowBytes)) {
   cursor_ = end_ = window_.get();
-  std::unique_ptr<ByteStream> bytes = open_bytes(path);
-  const auto* const file = dynamic_cast<const InputFile*>(bytes.get());
-  const std::int64_t file_size = file == nullptr ? 0 : file->size();
-  Unpacked content = unpacked(std::move(bytes));
+  const auto* const file = dynamic_cast<const InputFile*>(file_.get());
+  Unpacked content = unpacked(std::make_unique<LentStream>(raw_));
   stream_ = std::move(content.stream);
-  if (content.compression != nullptr) compression_ = content.compression->name;
-  if (file != nullptr && content.compression == nullptr) size_ = file_size;
+  if (content.compression != nullptr) {
+    compression_ = content.compression->name;
+  } else if (file != nullptr) {
+    size_ = file->size();
+  }
 }
 
 ByteSource::~ByteSource() = default;

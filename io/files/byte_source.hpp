@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "io/files/byte_stream.hpp"
+#include "io/files/hashed_stream.hpp"
 
 namespace semigeo::io {
 
@@ -22,6 +23,8 @@ class ByteSource {
   static constexpr std::size_t kWindowBytes = std::size_t{1} << 20;
 
   explicit ByteSource(const std::filesystem::path& path);
+  /// Reads a stream, which must be at its start and live as long as this.
+  explicit ByteSource(ByteStream& stream);
   ~ByteSource();
   ByteSource(const ByteSource&) = delete;
   ByteSource& operator=(const ByteSource&) = delete;
@@ -52,13 +55,19 @@ class ByteSource {
   /// Reads to the end, which for compressed bytes verifies the checksum. Returns how many of the
   /// bytes were neither blanks, line ends nor zeros.
   std::int64_t drain();
+  /// Reads the bytes of the file to their end, of a compressed file the compressed ones. Returns
+  /// their XXH3-128 (file_digest.hpp). Nothing can be read afterwards.
+  std::string xxh3() { return raw_.finish(); }
 
  private:
+  explicit ByteSource(std::unique_ptr<ByteStream> given);
   bool refill(std::size_t bytes);
 
   std::filesystem::path path_;
   std::string_view compression_;
   std::optional<std::int64_t> size_;  // of a plain file
+  std::unique_ptr<ByteStream> file_;
+  HashedStream raw_;
   std::unique_ptr<ByteStream> stream_;
   std::unique_ptr<char[]> window_;
   const char* cursor_ = nullptr;

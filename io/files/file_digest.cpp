@@ -2,20 +2,16 @@
 
 #include <xxhash.h>
 
-#include <memory>
 #include <new>
 #include <vector>
 
 #include "io/files/container.hpp"
+#include "io/files/hashed_stream.hpp"
 
 namespace semigeo::io {
 namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
-
-struct FreeState {
-  void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
-};
 
 std::string hex(XXH128_hash_t hash) {
   XXH128_canonical_t digest;
@@ -31,15 +27,26 @@ std::string hex(XXH128_hash_t hash) {
 
 }  // namespace
 
-std::string xxh3_of_stream(ByteStream& stream) {
-  const std::unique_ptr<XXH3_state_t, FreeState> state(XXH3_createState());
-  if (!state) throw std::bad_alloc();
-  XXH3_128bits_reset(state.get());
-  std::vector<char> buffer(kBufferBytes);
-  while (const std::size_t got = stream.read(buffer))
-    XXH3_128bits_update(state.get(), buffer.data(), got);
+HashedStream::HashedStream(ByteStream& stream) : stream_(stream), state_(XXH3_createState()) {
+  if (!state_) throw std::bad_alloc();
+  XXH3_128bits_reset(state_.get());
+}
 
-  return hex(XXH3_128bits_digest(state.get()));
+std::size_t HashedStream::read(std::span<char> bytes) {
+  const std::size_t got = stream_.read(bytes);
+  XXH3_128bits_update(state_.get(), bytes.data(), got);
+  return got;
+}
+
+std::string HashedStream::finish() {
+  std::vector<char> buffer(kBufferBytes);
+  while (read(buffer) > 0) {
+  }
+  return hex(XXH3_128bits_digest(state_.get()));
+}
+
+std::string xxh3_of_stream(ByteStream& stream) {
+  return HashedStream(stream).finish();
 }
 
 std::string xxh3_of_file(const std::filesystem::path& path) {

@@ -9,6 +9,7 @@
 #include "io/files/binary_load.hpp"
 #include "io/files/error.hpp"
 #include "io/files/printable.hpp"
+#include "io/scans/companions.hpp"
 #include "io/scans/whole_source.hpp"
 
 namespace semigeo::io {
@@ -90,6 +91,7 @@ std::string_view GltfFile::read_binary(ByteSource& source) {
 }
 
 void GltfFile::parse(std::string_view text) {
+  json_bytes_ = std::ssize(text);
   try {
     json_ = std::make_unique<nlohmann::json>(nlohmann::json::parse(text));
   } catch (const nlohmann::json::parse_error& error) {
@@ -126,12 +128,7 @@ void GltfFile::check_extensions() const {
 }
 
 std::string GltfFile::decode_uri(const GltfObject& buffer, std::string_view uri) const {
-  if (!uri.starts_with("data:")) {
-    const bool remote = uri.find("://") != std::string_view::npos;
-    buffer.fail(std::string("its bytes stand in another file") + (remote ? " on the network" : "") +
-                    ": '" + printable(std::string(uri.substr(0, 200))) + "'",
-                "convert the scan to .glb, which is one file (in Blender or with gltf-transform)");
-  }
+  if (!uri.starts_with("data:")) return read_companion(buffer, uri);
   const std::size_t comma = uri.find(',');
   if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64"))
     buffer.fail("its data is not in Base64", kExportAgain);
@@ -139,6 +136,36 @@ std::string GltfFile::decode_uri(const GltfObject& buffer, std::string_view uri)
   std::string bytes;
   decoder.read(uri.size(), bytes);
   if (!decoder.at_end()) buffer.fail("its Base64 data is damaged", kExportAgain);
+  return bytes;
+}
+
+/// Reads the bytes of a buffer that stand in a file beside the scan.
+std::string GltfFile::read_companion(const GltfObject& buffer, std::string_view uri) const {
+  constexpr const char* kConvert =
+      "convert the scan to .glb, which is one file (in Blender or with gltf-transform)";
+  const std::string shown = "'" + printable(std::string(uri.substr(0, 200))) + "'";
+  const std::optional<std::string> name = companion_name(uri);
+  if (!name) {
+    const bool remote = uri.find("://") != std::string_view::npos;
+    buffer.fail(std::string("its bytes stand ") +
+                    (remote ? "on the network: " : "outside of the folder of the scan: ") + shown,
+                kConvert);
+  }
+  if (json_bytes_ > kMostCompanionJson || root().size("buffers") > kMostCompanions)
+    buffer.fail("its bytes stand in another file, " + shown +
+                    ", and the scan has more than 1000 buffers or 64 MiB of JSON",
+                kConvert);
+  const std::unique_ptr<ByteStream> stream = open_companion(path_.parent_path() / *name);
+  if (stream == nullptr)
+    buffer.fail("its bytes stand in " + shown + ", and there is no such file",
+                "copy that file to its place beside the scan");
+  std::string bytes;
+  const std::int64_t most = std::min(buffer.integer("byteLength"), kMaxWholeBytes);
+  for (std::string part(std::size_t{1} << 20, '\0'); std::ssize(bytes) < most;) {
+    const std::size_t got = stream->read(part);
+    if (got == 0) break;
+    bytes.append(part, 0, got);
+  }
   return bytes;
 }
 
@@ -228,7 +255,7 @@ std::vector<Number> GltfFile::read(const GltfObject& accessor, Elements elements
   elements.count = accessor.integer("count");
   if (accessor.has("bufferView")) {
     locate(accessor, elements);
-  } else if (elements.count > file_bytes_) {
+  } else if (elements.count > file_bytes_ && elements.count > bytes_of_buffers()) {
     accessor.fail("it has more elements than the file has bytes", kExportAgain);
   }
   std::vector<Number> numbers(static_cast<std::size_t>(elements.count * elements.components));
@@ -258,6 +285,12 @@ void GltfFile::replace_sparse(const GltfObject& sparse, const Elements& all,
     one.data += i * value.stride;
     copy(one, numbers.data() + indices[i] * all.components);
   }
+}
+
+std::int64_t GltfFile::bytes_of_buffers() {
+  std::int64_t bytes = 0;
+  for (std::int64_t i = 0; i < root().size("buffers"); ++i) bytes += std::ssize(buffer(i));
+  return bytes;
 }
 
 GltfFile::Type GltfFile::index_type(const GltfObject& owner) {

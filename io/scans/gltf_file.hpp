@@ -14,9 +14,10 @@
 
 namespace semigeo::io {
 
-/// A glTF 2.0 file in memory: JSON, or binary (.glb) with JSON and a chunk of bytes in it. Gives
-/// the elements of its accessors. Everything is checked before it is read or reserved, and what is
-/// wrong is an Error that names the object of the JSON.
+/// A glTF 2.0 file in memory: JSON, or binary (.glb) with JSON and a chunk of bytes in it, and the
+/// buffers of it in files beside it (companions.hpp), once they are needed. Gives the elements of
+/// its accessors. Everything is checked before it is read or reserved, and what is wrong is an
+/// Error that names the object of the JSON.
 class GltfFile {
  public:
   /// Reads the source to its end, or a binary file to the end that it declares.
@@ -61,6 +62,8 @@ class GltfFile {
   void check_extensions() const;
   std::string_view buffer(std::int64_t index);
   std::string decode_uri(const GltfObject& buffer, std::string_view uri) const;
+  std::string read_companion(const GltfObject& buffer, std::string_view uri) const;
+  std::int64_t bytes_of_buffers();
   /// Finds the elements in the bufferView that `owner`, an accessor or a part of one, refers to.
   void locate(const GltfObject& owner, Elements& elements);
   template <typename Number>
@@ -79,9 +82,11 @@ class GltfFile {
   std::string bytes_;       // of a binary file
   std::string_view chunk_;  // its binary chunk
   std::int64_t file_bytes_ = 0;
+  std::int64_t json_bytes_ = 0;
   bool binary_ = false;
   std::unique_ptr<nlohmann::json> json_;
-  std::vector<std::optional<std::string>> decoded_;  // buffers that were in the JSON, if used
+  std::vector<std::optional<std::string>>
+      decoded_;  // buffers that do not stand in the chunk, if used
 };
 
 }  // namespace semigeo::io

@@ -1,10 +1,14 @@
 #include "io/scans/gltf_json.hpp"
 
+#include <bit>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "io/files/binary_load.hpp"
 #include "io/files/error.hpp"
+#include "io/scans/companions.hpp"
+#include "io/scans/whole_source.hpp"
 
 namespace semigeo::io {
 namespace {
@@ -15,6 +19,34 @@ constexpr std::int64_t kLargest = std::int64_t{1} << 53;  // JSON's numbers are 
 std::string subscript(std::int64_t index) {
   return "[" + std::to_string(index) + "]";
 }
+
+/// Says which parts of a file's JSON are kept while it is parsed: the URIs of the first buffers. So
+/// memory is bounded, whatever the file is.
+class FirstBuffers {
+ public:
+  using Event = nlohmann::json::parse_event_t;
+
+  bool operator()(int depth, Event event, const nlohmann::json& parsed) {
+    switch (depth) {
+      case 0:
+        return event == Event::object_start || event == Event::object_end;
+      case 1:
+        if (event == Event::key) inside_ = parsed == "buffers";
+        return inside_ && event != Event::value;
+      case 2:
+        if (event == Event::object_start) return inside_ && ++buffers_ <= kMostCompanions;
+        return event == Event::object_end;
+      case 3:
+        return event == Event::value || (event == Event::key && parsed == "uri");
+      default:
+        return false;
+    }
+  }
+
+ private:
+  bool inside_ = false;
+  std::int64_t buffers_ = 0;
+};
 
 }  // namespace
 
@@ -106,6 +138,32 @@ void GltfObject::read_numbers(const char* key, double* values, std::size_t size)
   if (!good)
     fail("'" + std::string(key) + "' is not an array of " + std::to_string(size) + " numbers",
          kExportAgain);
+}
+
+std::vector<std::string> gltf_references(ByteSource& source) {
+  std::int64_t most = kMostCompanionJson;
+  constexpr std::size_t kHeadersBytes = 20;  // of the file and of its first chunk
+  if (source.fill(kHeadersBytes) && source.ahead().starts_with("glTF")) {
+    const std::int64_t bytes = load<std::uint32_t>(source.ahead().data() + 12, std::endian::little);
+    if (bytes > most) return {};
+    most = bytes - 1;
+    source.consume(kHeadersBytes);
+  }
+  const std::string text = read_whole(source, most + 1);
+  if (std::ssize(text) > kMostCompanionJson) return {};
+  FirstBuffers keep;
+  const auto json = nlohmann::json::parse(
+      text, [&](int depth, auto event, auto& parsed) { return keep(depth, event, parsed); },
+      /*allow_exceptions=*/false);
+  std::vector<std::string> references;
+  if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return {};
+  for (const nlohmann::json& buffer : json["buffers"]) {
+    const auto uri = buffer.find("uri");
+    if (uri == buffer.end() || !uri->is_string()) continue;
+    const auto& reference = uri->get_ref<const std::string&>();
+    if (!reference.starts_with("data:")) references.push_back(reference);
+  }
+  return references;
 }
 
 }  // namespace semigeo::io

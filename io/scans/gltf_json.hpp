@@ -8,6 +8,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "io/files/byte_source.hpp"
 
 namespace semigeo::io {
 
@@ -59,5 +62,9 @@ class GltfObject {
   const nlohmann::json* value_;
   std::string place_;
 };
+
+/// Returns the references of buffers to other files, of a source at its start. Only the first
+/// kMostCompanions buffers are looked at, of JSON of at most kMostCompanionJson bytes.
+std::vector<std::string> gltf_references(ByteSource& source);
 
 }  // namespace semigeo::io

@@ -280,15 +280,18 @@ std::string variant_of(std::string_view begin) {
 
 }  // namespace
 
-const ScanFormat kGltfFormat = {.extension = ".gltf",
-                                .read = read_gltf,
-                                .variant = variant_of,
-                                .content = "meshes",
-                                .variants = "glTF 2.0 with its bytes in the file"};
+const ScanFormat kGltfFormat = {
+    .extension = ".gltf",
+    .read = read_gltf,
+    .variant = variant_of,
+    .content = "meshes",
+    .variants = "glTF 2.0, with its bytes in the file or in files beside it",
+    .companions = gltf_references};
 const ScanFormat kGlbFormat = {.extension = ".glb",
                                .read = read_gltf,
                                .variant = variant_of,
                                .content = "meshes",
-                               .variants = "binary glTF 2.0"};
+                               .variants = "binary glTF 2.0",
+                               .companions = gltf_references};
 
 }  // namespace semigeo::io

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "io/files/byte_source.hpp"
 #include "io/scans/scan_reader.hpp"
@@ -20,6 +22,9 @@ struct ScanFormat {
   std::string (*variant)(std::string_view begin);
   std::string_view content;   ///< What is read, for people: "meshes, range grids".
   std::string_view variants;  ///< Which variants are read, for people; empty if there is one.
+  /// Returns how a source at its start names the files beside it that it needs (companions.hpp), or
+  /// is nullptr if no file of the format needs another. A damaged source may name none.
+  std::vector<std::string> (*companions)(ByteSource& source) = nullptr;
 };
 
 // Each is defined by its reader.
@@ -38,5 +43,9 @@ extern const ScanFormat kVtpFormat;
 inline constexpr std::array kScanFormats = {&kPlyFormat, &kObjFormat, &kOffFormat,  &kStlFormat,
                                             &kPcdFormat, &kPtxFormat, &kGltfFormat, &kGlbFormat,
                                             &kVtkFormat, &kVtpFormat};
+
+/// Returns the format that a file's name tells, also before the extension of a compression, or
+/// nullptr.
+const ScanFormat* scan_format_of(const std::filesystem::path& path);
 
 }  // namespace semigeo::io

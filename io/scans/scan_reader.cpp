@@ -9,20 +9,13 @@
 #include "io/files/error.hpp"
 #include "io/files/file_signature.hpp"
 #include "io/files/lower_case.hpp"
+#include "io/scans/companions.hpp"
 #include "io/scans/scan_formats.hpp"
 
 namespace semigeo::io {
 namespace {
 
 constexpr std::size_t kVariantBytes = 1024;  // these many first bytes tell the variant, or the kind
-
-const ScanFormat* find_format(const std::filesystem::path& path) {
-  const std::filesystem::path name = compression_of_name(path) == nullptr ? path : path.stem();
-  const std::string extension = lower_case(name.extension().string());
-  for (const ScanFormat* format : kScanFormats)
-    if (format->extension == extension) return format;
-  return nullptr;
-}
 
 /// Returns "PLY ascii, gzip".
 std::string with_compression(const std::string& format, std::string_view compression) {
@@ -41,12 +34,20 @@ void refuse_other_kind(const ByteSource& source, const ScanFormat& format,
 
 }  // namespace
 
+const ScanFormat* scan_format_of(const std::filesystem::path& path) {
+  const std::filesystem::path name = compression_of_name(path) == nullptr ? path : path.stem();
+  const std::string extension = lower_case(name.extension().string());
+  for (const ScanFormat* format : kScanFormats)
+    if (format->extension == extension) return format;
+  return nullptr;
+}
+
 bool is_scan_name(const std::filesystem::path& path) {
-  return find_format(path) != nullptr;
+  return scan_format_of(path) != nullptr;
 }
 
 std::string scan_variant(const std::filesystem::path& path) {
-  const ScanFormat* format = find_format(path);
+  const ScanFormat* format = scan_format_of(path);
   if (format == nullptr) return "";
   ByteSource source(path);
   source.fill(kVariantBytes);
@@ -55,7 +56,7 @@ std::string scan_variant(const std::filesystem::path& path) {
 }
 
 std::string likely_scan_variant(const std::filesystem::path& path) {
-  const ScanFormat* format = find_format(path);
+  const ScanFormat* format = scan_format_of(path);
   if (format == nullptr) return "";
   const FileCompression* compression = compression_of_name(path);
   return with_compression(format->variant({}), compression == nullptr ? "" : compression->name);
@@ -73,7 +74,7 @@ std::string scan_extensions(std::string_view separator, std::string_view last_se
 
 Scan read_scan(const std::filesystem::path& path, const ScanOptions& options) {
   ByteSource source(path);
-  const ScanFormat* format = find_format(path);
+  const ScanFormat* format = scan_format_of(path);
   if (format == nullptr)
     throw Error(path, "", "its name is not that of a scan",
                 "scans are " + scan_extensions(", ", " and ") +
@@ -85,6 +86,7 @@ Scan read_scan(const std::filesystem::path& path, const ScanOptions& options) {
   try {
     Scan scan = format->read(source, options);
     scan.bytes_after_end = source.drain();
+    scan.xxh3 = format->companions == nullptr ? source.xxh3() : xxh3_of_scan(path);
     scan.format = with_compression(std::move(scan.format), source.compression());
     return scan;
   } catch (const Error&) {

@@ -39,7 +39,9 @@ struct ScanOptions {
 /// Holds the content of a scan file.
 struct Scan {
   kernels::TriangleMesh mesh;  ///< As the file lists it. An STL has three points for each triangle.
-  std::string format;          ///< "PLY binary little endian", "OBJ", "STL ascii, gzip", ...
+  /// XXH3-128 of the bytes that were read, with those of companions (companions.hpp).
+  std::string xxh3;
+  std::string format;  ///< "PLY binary little endian", "OBJ", "STL ascii, gzip", ...
   std::int64_t polygons_triangulated = 0;  ///< Faces with more than three corners.
   /// Bytes that are not blank, behind all that the header promises.
   std::int64_t bytes_after_end = 0;

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "io/files/error.hpp"
-#include "io/files/file_digest.hpp"
+#include "io/scans/companions.hpp"
 #include "jobs/archive/in_children.hpp"
 #include "jobs/archive/path_text.hpp"
 
@@ -63,30 +63,82 @@ io::ContainerListing listing_from(const std::string& text) {
   return listing;
 }
 
-/// Returns the digests of members as JSON: name, digest, error.
-std::string digest_text(const WantedMembers& wanted) {
-  std::set<std::string> names(wanted.names.begin(), wanted.names.end());
-  json digests = json::array();
-  const auto add = [&](const std::string& name, const std::string& xxh3, const std::string& error) {
-    digests.push_back({escaped(name), xxh3, escaped(error)});
-  };
+/// What was read of a member.
+struct MemberContent {
+  io::ScanContent content = {};
+  std::int64_t bytes = 0;
+  std::string error = {};
+};
+
+/// Passes over a container once and reads the members of these names. Those that are not there are
+/// not in the result.
+std::map<std::string, MemberContent> contents_of(const fs::path& container,
+                                                 std::set<std::string> names) {
+  std::map<std::string, MemberContent> contents;
   try {
-    io::ContainerReader reader(wanted.container);
+    io::ContainerReader reader(container);
     while (!names.empty() && reader.next()) {
       if (reader.kind() != io::ContainerReader::Kind::kFile || names.erase(reader.name()) == 0)
         continue;
+      MemberContent& member = contents[reader.name()];
       try {
-        add(reader.name(), io::xxh3_of_stream(reader), "");
+        member.content = io::scan_content(reader);
+        member.bytes = reader.position();
       } catch (const io::Error& error) {
-        add(reader.name(), "", error.what());
+        member.error = error.what();
       }
     }
-    for (const std::string& name : names)
-      add(name, "", io::Error(wanted.container / name, "", "is gone", "run again").what());
   } catch (const io::Error& error) {
-    for (const std::string& name : names) add(name, "", error.what());
+    for (const std::string& name : names) contents[name].error = error.what();
+  }
+  return contents;
+}
+
+/// Returns the digests of members as JSON: name, digest, error, companions, their bytes.
+std::string digest_text(const WantedMembers& wanted) {
+  const auto members = contents_of(wanted.container, {wanted.names.begin(), wanted.names.end()});
+  std::set<std::string> names;
+  const auto name_of = [&](const fs::path& companion) {
+    return companion.lexically_relative(wanted.container).native();
+  };
+  for (const auto& [name, member] : members)
+    for (const fs::path& companion : member.content.companions) names.insert(name_of(companion));
+  const auto companions = names.empty() ? std::map<std::string, MemberContent>()
+                                        : contents_of(wanted.container, std::move(names));
+  json digests = json::array();
+  for (const std::string& name : wanted.names) {
+    const auto member = members.find(name);
+    if (member == members.end()) {
+      const io::Error gone(wanted.container / name, "", "is gone", "run again");
+      digests.push_back({escaped(name), "", escaped(gone.what()), json::array(), 0});
+      continue;
+    }
+    std::string error = member->second.error;
+    std::vector<std::string> others, paths;
+    std::int64_t bytes = 0;
+    for (const fs::path& companion : member->second.content.companions) {
+      const auto other = companions.find(name_of(companion));
+      const MemberContent found = other == companions.end() ? MemberContent() : other->second;
+      others.push_back(found.content.xxh3);
+      paths.push_back(companion.native());
+      bytes += found.bytes;
+      if (error.empty()) error = found.error;
+    }
+    digests.push_back({escaped(name), io::xxh3_with_companions(member->second.content.xxh3, others),
+                       escaped(error), escaped_all(paths), bytes});
   }
   return digests.dump();
+}
+
+/// Returns the digest that digest_text has written.
+ScanDigest digest_from(const json& member) {
+  ScanDigest digest{.xxh3 = member.at(1).get<std::string>(),
+                    .error = unescaped(member.at(2).get<std::string>()),
+                    .companions = {},
+                    .companion_bytes = member.at(4).get<std::uintmax_t>()};
+  for (std::string& path : unescaped_all(member.at(3).get<std::vector<std::string>>()))
+    digest.companions.emplace_back(std::move(path));
+  return digest;
 }
 
 }  // namespace
@@ -120,9 +172,7 @@ std::vector<std::map<std::string, ScanDigest>> digests_of_members(
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     if (results[i].exit_code == 0) {
       for (const json& member : json::parse(results[i].text))
-        digests[i][unescaped(member.at(0).get<std::string>())] = {
-            .xxh3 = member.at(1).get<std::string>(),
-            .error = unescaped(member.at(2).get<std::string>())};
+        digests[i][unescaped(member.at(0).get<std::string>())] = digest_from(member);
       continue;
     }
     const std::string problem = problem_of(wanted[i].container, results[i]);

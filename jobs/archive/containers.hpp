@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -9,10 +10,12 @@
 
 namespace semigeo::jobs {
 
-/// The digest of a scan, or why there is none.
+/// The digest of a scan and its companions (io/scans/companions.hpp), or why there is none.
 struct ScanDigest {
   std::string xxh3;
   std::string error;
+  std::vector<std::filesystem::path> companions = {};
+  std::uintmax_t companion_bytes = 0;  ///< Size of its companions if they are members.
 };
 
 /// Returns whether a member is hidden, or is in a hidden folder.
@@ -29,8 +32,9 @@ struct WantedMembers {
   std::vector<std::string> names;  ///< Names of scans in it, each once.
 };
 
-/// Returns the XXH3-128 of the bytes of each member, by its name. Each container is read in one
-/// pass, in a child process, `at_once` of them at a time (0: one for each core).
+/// Returns the digest of each member, by its name. Each container is read in one pass, and in a
+/// second one if members have companions, in a child process, `at_once` of them at a time (0: one
+/// for each core).
 std::vector<std::map<std::string, ScanDigest>> digests_of_members(
     const std::vector<WantedMembers>& wanted, int at_once);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <ctime>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include "io/files/file_digest.hpp"
 #include "io/files/input_file.hpp"
 #include "io/files/small_file.hpp"
+#include "io/scans/companions.hpp"
 
 namespace semigeo::jobs {
 namespace {
@@ -26,6 +28,7 @@ constexpr std::int64_t kNanoseconds = 1'000'000'000;
 /// The coarsest step of the times of file systems in use.
 constexpr std::int64_t kRacy = 2 * kNanoseconds;
 constexpr std::string_view kNoJob = "-";
+constexpr std::string_view kCompanion = "+";  // in place of a digest
 
 std::int64_t nanoseconds(const timespec& time) {
   return std::int64_t{time.tv_sec} * kNanoseconds + time.tv_nsec;
@@ -33,7 +36,7 @@ std::int64_t nanoseconds(const timespec& time) {
 
 /// Returns the first line of the file. Files of other versions and damaged files begin otherwise.
 std::string head_of(std::string_view body) {
-  return "semigeo-digests 1 " + std::to_string(io::kDatasetFormatVersion) + ' ' +
+  return "semigeo-digests 2 " + std::to_string(io::kDatasetFormatVersion) + ' ' +
          io::xxh3_of_text(body) + '\n';
 }
 
@@ -67,6 +70,12 @@ Number next_number(std::string_view& line) {
   return number;
 }
 
+std::string line_of(const DatasetKeys& keys, const FileStamp& stamp, const std::string& path) {
+  return keys.input_xxh3 + ' ' + keys.job_key + ' ' + std::to_string(stamp.size) + ' ' +
+         std::to_string(stamp.modified) + ' ' + std::to_string(stamp.changed) + ' ' +
+         std::to_string(stamp.inode) + ' ' + path + '\n';
+}
+
 bool is_scan(const std::string& path) {
   return path.starts_with('/');
 }
@@ -97,10 +106,15 @@ struct DigestCache::Reading {
   std::int64_t begun = 0;
   std::optional<FileStamp> before;
   std::optional<FileStamp> after;
+  std::vector<Companion> companions = {};
+  bool companions_changed = false;
 
+  bool is_old(const FileStamp& stamp) const {
+    return std::max(stamp.modified, stamp.changed) + kRacy <= begun;
+  }
   bool is_trustworthy() const {
-    return before && before == after &&
-           std::max(before->modified, before->changed) + kRacy <= begun;
+    return before && before == after && is_old(*before) && !companions_changed &&
+           std::ranges::all_of(companions, [&](const Companion& c) { return is_old(c.stamp); });
   }
 };
 
@@ -130,7 +144,12 @@ DigestCache DigestCache::read(const fs::path& archive, Clock clock) {
     entry.stamp.modified = next_number<std::int64_t>(line);
     entry.stamp.changed = next_number<std::int64_t>(line);
     entry.stamp.inode = next_number<std::uint64_t>(line);
-    cache.entries_.emplace_hint(cache.entries_.end(), line, std::move(entry));
+    if (entry.keys.input_xxh3 == kCompanion && !cache.entries_.empty()) {
+      std::prev(cache.entries_.end())
+          ->second.companions.push_back({.path = std::string(line), .stamp = entry.stamp});
+    } else {
+      cache.entries_.emplace_hint(cache.entries_.end(), line, std::move(entry));
+    }
   }
   cache.text_ = std::move(text);
   return cache;
@@ -139,13 +158,24 @@ DigestCache DigestCache::read(const fs::path& archive, Clock clock) {
 const DigestCache::Entry* DigestCache::find(const std::string& path,
                                             const std::optional<FileStamp>& stamp) const {
   const auto found = entries_.find(path);
-  return found != entries_.end() && found->second.stamp == stamp ? &found->second : nullptr;
+  if (found == entries_.end() || found->second.stamp != stamp) return nullptr;
+  const bool same = std::ranges::all_of(found->second.companions, [](const Companion& companion) {
+    return stamp_of(companion.path).value_or(FileStamp()) == companion.stamp;
+  });
+  return same ? &found->second : nullptr;
 }
 
 void DigestCache::remember(const std::string& path, const Reading& reading) {
   // A line ends with its path. Paths with line ends are not remembered.
-  if (reading.is_trustworthy() && path.find('\n') == std::string::npos) {
-    entries_[path] = {.keys = reading.keys, .stamp = *reading.before, .used = true};
+  const bool has_line_end = path.find('\n') != std::string::npos ||
+                            std::ranges::any_of(reading.companions, [](const Companion& companion) {
+                              return companion.path.find('\n') != std::string::npos;
+                            });
+  if (reading.is_trustworthy() && !has_line_end) {
+    entries_[path] = {.keys = reading.keys,
+                      .stamp = *reading.before,
+                      .companions = reading.companions,
+                      .used = true};
   } else {
     entries_.erase(path);
   }
@@ -174,7 +204,9 @@ void DigestCache::digest_members(const std::vector<FoundScan>& scans, int thread
   for (const auto& [container, members] : by_container) {
     for (const std::size_t i : members) {
       digests[i] = of_container->at(scans[i].input.lexically_relative(container).native());
-      if (digests[i].error.empty()) end(scans[i], digests[i], readings[i]);
+      // The size of companions is not remembered, so scans with companions are not, either.
+      if (digests[i].error.empty() && digests[i].companions.empty())
+        end(scans[i], digests[i], readings[i]);
     }
     ++of_container;
   }
@@ -191,8 +223,7 @@ std::vector<ScanDigest> DigestCache::scan_digests(const std::vector<FoundScan>& 
       return;
     }
     try {
-      digests[i].xxh3 = io::xxh3_of_file(scans[i].input);
-      end(scans[i], digests[i], readings[i]);
+      digests[i] = digest_file(scans[i], readings[i]);
     } catch (const std::exception& e) {
       digests[i].error = e.what();
     }
@@ -228,6 +259,22 @@ void DigestCache::end(const FoundScan& scan, const ScanDigest& digest, Reading& 
   reading.after = stamp_of(file_to_stamp(scan));
 }
 
+ScanDigest DigestCache::digest_file(const FoundScan& scan, Reading& reading) {
+  io::ScanContent content = io::scan_content(scan.input);
+  const auto stamp = [](const fs::path& file) { return stamp_of(file).value_or(FileStamp()); };
+  std::vector<std::string> others;
+  for (const fs::path& companion : content.companions) {
+    reading.companions.push_back({.path = fs::absolute(companion), .stamp = stamp(companion)});
+    others.push_back(io::xxh3_of_companion(companion));
+    reading.companions_changed |= stamp(companion) != reading.companions.back().stamp;
+  }
+  ScanDigest digest{.xxh3 = io::xxh3_with_companions(content.xxh3, others),
+                    .error = "",
+                    .companions = std::move(content.companions)};
+  end(scan, digest, reading);
+  return digest;
+}
+
 std::optional<DatasetKeys> DigestCache::dataset_keys(const std::string& name) {
   Reading reading;
   reading.begun = now_();
@@ -261,10 +308,10 @@ void DigestCache::write() {
     // Entries that were not used are kept as long as their files exist. They belong to scans in
     // other folders.
     if (!entry.used && !stamp_of(file_of(path))) continue;
-    const FileStamp& stamp = entry.stamp;
-    body += entry.keys.input_xxh3 + ' ' + entry.keys.job_key + ' ' + std::to_string(stamp.size) +
-            ' ' + std::to_string(stamp.modified) + ' ' + std::to_string(stamp.changed) + ' ' +
-            std::to_string(stamp.inode) + ' ' + path + '\n';
+    body += line_of(entry.keys, entry.stamp, path);
+    for (const Companion& companion : entry.companions)
+      body += line_of({.job_key = std::string(kNoJob), .input_xxh3 = std::string(kCompanion)},
+                      companion.stamp, companion.path);
   }
   std::string text = head_of(body) + body;
   if (text == text_) return;

@@ -32,10 +32,12 @@ struct DatasetKeys {
 };
 
 /// Remembers digests, so that planning need not read files that have not changed since the last
-/// run. ARCHIVE/digests.txt holds a line for each scan and dataset: digest, job key, stamp, path. A
-/// file with another stamp is read again. A member of a container has the stamp of the container. A
-/// file that was changed less than two seconds before it was read is not remembered, because a
-/// second change could leave the same times. Only speed depends on digests.txt: it may be removed.
+/// run. ARCHIVE/digests.txt holds a line for each scan and dataset: digest, job key, stamp, path.
+/// Behind a scan follows a line for each of its companions, which begins with "+". A file with
+/// another stamp, or a companion with another one, is read again. A member of a container has the
+/// stamp of the container. A file that was changed less than two seconds before it was read is not
+/// remembered, because a second change could leave the same times. Only speed depends on
+/// digests.txt: it may be removed.
 class DigestCache {
  public:
   /// Returns the time in nanoseconds since 1970.
@@ -60,14 +62,22 @@ class DigestCache {
   void write();
 
  private:
+  /// A file that belongs to a scan.
+  struct Companion {
+    std::string path;
+    FileStamp stamp;  ///< All zeros if it is absent.
+  };
   struct Entry {
     DatasetKeys keys;  ///< A scan has its own digest, and no job.
     FileStamp stamp;
+    std::vector<Companion> companions = {};
     bool used = false;
   };
   struct Reading;
   void digest_members(const std::vector<FoundScan>& scans, int threads,
                       std::vector<Reading>& readings, std::vector<ScanDigest>& digests) const;
+  /// Reads a scan that is no member of a container.
+  static ScanDigest digest_file(const FoundScan& scan, Reading& reading);
   /// Begins a reading of a scan. Returns its entry if it has not changed.
   const Entry* begin(const FoundScan& scan, Reading& reading) const;
   static void end(const FoundScan& scan, const ScanDigest& digest, Reading& reading);

@@ -13,58 +13,17 @@
 
 #include "io/files/container.hpp"
 #include "io/files/error.hpp"
-#include "io/files/file_digest.hpp"
 #include "io/files/lower_case.hpp"
 #include "io/scans/scan_reader.hpp"
 #include "jobs/archive/containers.hpp"
+#include "jobs/archive/names.hpp"
 
 namespace semigeo::jobs {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kSuffixDigits = 8;
-constexpr std::size_t kMaxNameLength = 180;
 constexpr const char* kOtherKind = "other";
-
-std::string short_hash(const std::string& text) {
-  return io::xxh3_of_text(text).substr(0, kSuffixDigits);
-}
-
-bool is_safe(char c) {
-  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '-' || c == '_';
-}
-
-/// Returns whether "__" in the name could come from anything but the joining of folders.
-bool has_misleading_underscore(const std::string& path) {
-  return path.find("__") != std::string::npos || path.find("_/") != std::string::npos ||
-         path.find("/_") != std::string::npos;
-}
-
-std::string dataset_name(const fs::path& relative) {
-  const std::string path = relative.generic_string();
-  std::string name;
-  bool exact = !has_misleading_underscore(path);
-  for (const char c : path) {
-    if (c == '/') {
-      name += "__";
-    } else if (is_safe(c)) {
-      name += c;
-    } else {
-      name += '_';
-      exact = false;
-    }
-  }
-  if (name.size() > kMaxNameLength) {
-    name = name.substr(name.size() - kMaxNameLength);
-    exact = false;
-  }
-  if (name.starts_with('.')) {  // a hidden dataset would be passed over
-    name.front() = '_';
-    exact = false;
-  }
-  return exact ? name : name + "-" + short_hash(path);
-}
 
 bool is_hidden(const fs::path& path) {
   return path.filename().string().starts_with('.');
@@ -354,6 +313,26 @@ std::string in_words(const PassedOver& passed_over) {
   for (const auto& [kind, count] : kinds)
     text += (text.empty() ? "" : ", ") + std::to_string(count) + ' ' + kind;
   return text;
+}
+
+std::vector<fs::path> folders_behind_links(const fs::path& folder) {
+  std::vector<fs::path> found;
+  std::set<FolderId> searched;
+  for (std::vector<fs::path> waiting = {folder}; !waiting.empty();) {
+    const fs::path next = std::move(waiting.back());
+    waiting.pop_back();
+    if (!searched.insert(id_of(next)).second) continue;
+    std::error_code error;
+    fs::directory_iterator entry(next, error);
+    for (const fs::directory_iterator end; !error && entry != end; entry.increment(error)) {
+      std::error_code ignored;
+      if (is_hidden(entry->path()) || !entry->is_directory(ignored)) continue;
+      waiting.push_back(entry->path());
+      if (entry->is_symlink(ignored)) found.push_back(identity(entry->path()));
+    }
+  }
+  std::ranges::sort(found);
+  return found;
 }
 
 FoundScans find_scans(const std::vector<fs::path>& inputs, const fs::path& archive) {

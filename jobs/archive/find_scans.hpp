@@ -55,6 +55,10 @@ struct FoundScans {
 FoundScans find_scans(const std::vector<std::filesystem::path>& inputs,
                       const std::filesystem::path& archive);
 
+/// Returns the folders, as absolute paths without links, that a search of the folder reaches by
+/// symbolic links. Hidden folders are passed over, and what cannot be searched has none.
+std::vector<std::filesystem::path> folders_behind_links(const std::filesystem::path& folder);
+
 /// Returns the scans and datasets (.vtkhdf) in which objects are searched, in the same order and
 /// with the same names as `find_scans`. The folders in `passed_over` are not searched, unless they
 /// are inputs themselves.

@@ -1,6 +1,7 @@
 #include "jobs/archive/scan_size.hpp"
 
 #include "io/files/container.hpp"
+#include "io/scans/companions.hpp"
 #include "io/scans/scan_reader.hpp"
 
 namespace semigeo::jobs {
@@ -10,7 +11,7 @@ ScanSize scan_size(const std::filesystem::path& scan) {
   try {
     std::string format = io::scan_variant(scan);
     if (format.empty()) return {};
-    return {.format = std::move(format), .bytes = std::filesystem::file_size(scan)};
+    return {.format = std::move(format), .bytes = io::bytes_of_scan(scan)};
   } catch (const std::exception&) {
     return {};
   }

@@ -4,13 +4,12 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
-#include <string_view>
 
 #include "io/files/container.hpp"
 #include "io/files/error.hpp"
-#include "io/files/file_digest.hpp"
 #include "io/files/read_error.hpp"
 #include "io/files/small_file.hpp"
+#include "jobs/archive/names.hpp"
 #include "jobs/archive/path_text.hpp"
 
 namespace semigeo::jobs {
@@ -20,18 +19,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kFileName = "sources.json";
 constexpr io::TextBounds kBounds = {.bytes = std::int64_t{256} << 20, .depth = 1};
-constexpr std::string_view kMark = "--";  // a base never has this in the same place
-constexpr std::size_t kHashDigits = 8;
-
-std::string with_hash(const Unnamed& scan) {
-  return scan.base + std::string(kMark) +
-         io::xxh3_of_text(scan.scan.string()).substr(0, kHashDigits);
-}
-
-bool is_variant(const std::string& name, const std::string& base) {
-  return name == base || (name.size() == base.size() + kMark.size() + kHashDigits &&
-                          name.starts_with(base + std::string(kMark)));
-}
 
 [[noreturn]] void refuse(const fs::path& file) {
   throw io::Error(file, "", "is damaged: it must name a scan for each dataset",
@@ -111,7 +98,7 @@ std::vector<std::string> choose_names(
     return name == scan.base && (known == nullptr || is_gone(*known));
   });
   for (const std::size_t i : order)
-    if (names[i].empty()) names[i] = with_hash(scans[i]);
+    if (names[i].empty()) names[i] = name_with_hash(scans[i].base, scans[i].scan);
   return names;
 }
 

@@ -10,10 +10,10 @@
 #include "jobs/archive/verification.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/datasets.hpp"
-#include "jobs/cli/given_names.hpp"
 #include "jobs/cli/json_output.hpp"
 #include "jobs/cli/output.hpp"
 #include "jobs/cli/run_plan.hpp"
+#include "jobs/kinds/given_names.hpp"
 #include "jobs/kinds/library_plan.hpp"
 #include "jobs/kinds/triplets.hpp"
 

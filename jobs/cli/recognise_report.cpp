@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "jobs/cli/failures.hpp"
-#include "jobs/cli/given_names.hpp"
 #include "jobs/cli/json_output.hpp"
 #include "jobs/cli/output.hpp"
 #include "jobs/cli/run_report.hpp"
+#include "jobs/kinds/given_names.hpp"
 #include "jobs/run/progress.hpp"
 #include "jobs/stages/recognised_file.hpp"
 

@@ -9,6 +9,7 @@
 #include "jobs/cli/failures.hpp"
 #include "jobs/cli/json_output.hpp"
 #include "jobs/cli/output.hpp"
+#include "jobs/kinds/given_names.hpp"
 #include "jobs/run/progress.hpp"
 
 namespace semigeo::jobs::cli {
@@ -56,7 +57,13 @@ void print_counts(const ArchiveStatus& status) {
   print("\n");
 }
 
-void print_status(const ArchiveStatus& status, bool details) {
+/// Returns how people know a job of the journal: its kind, and what they call its scan.
+std::string shown_job(const std::string& job, const GivenNames& given) {
+  const std::size_t name = job.find(' ') + 1;
+  return job.substr(0, name) + given.name_of(job.substr(name));
+}
+
+void print_status(const ArchiveStatus& status, bool details, const GivenNames& given) {
   print(std::string_view(state_of(status)));
   if (status.last_run) print(", started ", status.started, ", ", short_duration(status.seconds));
   if (status.owner)
@@ -68,10 +75,11 @@ void print_status(const ArchiveStatus& status, bool details) {
                           [](const auto& kind) { return kind.first != "surface"; }))
     for (const auto& [kind, number] : status.done_by_kind) print("done: ", number, " ", kind, "\n");
   for (const auto& [job, seconds] : status.running)
-    print(std::string_view(status.is_running() ? "running" : "cut off"), ": ", job, ", since ",
-          short_duration(seconds), "\n");
+    print(std::string_view(status.is_running() ? "running" : "cut off"), ": ",
+          shown_job(job, given), ", since ", short_duration(seconds), "\n");
   if (details || status.failed.size() <= kFew) {
-    for (const auto& [job, error] : status.failed) print("failed: ", job, ": ", error, "\n");
+    for (const auto& [job, error] : status.failed)
+      print("failed: ", shown_job(job, given), ": ", error, "\n");
   } else {
     std::vector<Failure> failures;
     for (const auto& [job, error] : status.failed) failures.push_back({error});
@@ -79,7 +87,8 @@ void print_status(const ArchiveStatus& status, bool details) {
   }
   if (details)
     for (const auto& [job, notes] : status.notes)
-      for (const auto& [heading, text] : notes) print(heading, ": ", job, ": ", text, "\n");
+      for (const auto& [heading, text] : notes)
+        print(heading, ": ", shown_job(job, given), ": ", text, "\n");
   print(status.datasets, " datasets in the archive\n");
 }
 
@@ -99,7 +108,12 @@ void add_status(CLI::App& app, int& exit_code) {
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options, &exit_code] {
     const ArchiveStatus status = status_of(options->archive);
-    options->json ? print_document(to_json(status)) : print_status(status, options->details);
+    if (options->json) {
+      print_document(to_json(status));
+    } else {
+      print_status(status, options->details,
+                   GivenNames(std::filesystem::path(options->archive) / "library.h5"));
+    }
     exit_code = kAllDone;
   });
 }

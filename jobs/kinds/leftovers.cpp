@@ -1,6 +1,7 @@
 #include "jobs/kinds/leftovers.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <system_error>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "io/files/container.hpp"
 #include "io/files/error.hpp"
 #include "jobs/archive/digest_cache.hpp"
+#include "jobs/archive/find_scans.hpp"
 #include "jobs/archive/links.hpp"
 #include "jobs/archive/sources.hpp"
 #include "jobs/kinds/library_plan.hpp"
@@ -64,7 +66,8 @@ Leftover recognised_leftover(const fs::path& archive, const std::string& name,
       {recognised_path(archive, name), archive / "logs" / (name + ".recognise.log")});
 }
 
-/// The folders that were named, as absolute paths without links.
+/// Returns the folders that were named and those that symbolic links in them lead to, as absolute
+/// paths without links.
 std::vector<fs::path> resolved(const std::vector<fs::path>& folders) {
   std::vector<fs::path> result;
   for (const fs::path& folder : folders) {
@@ -75,6 +78,7 @@ std::vector<fs::path> resolved(const std::vector<fs::path>& folders) {
                       "see that its disk is mounted; if the folder itself was removed, name the "
                       "folder above it");
     result.push_back(path);
+    std::ranges::move(folders_behind_links(path), std::back_inserter(result));
   }
   return result;
 }

@@ -35,11 +35,11 @@ struct Leftovers {
 /// are left out. There is none if the folder is no archive.
 std::vector<std::filesystem::path> recorded_folders(const std::filesystem::path& archive);
 
-/// Finds what the archive has of scans that were in the folders, or below them, and are gone. Scans
-/// about which nothing can be known, because a folder cannot be searched or a disk does not answer,
-/// are not gone. Files that the archive's sources.json does not name are nobody's leftovers, and
-/// neither are the datasets in `in_use`. Throws io::Error if a folder does not exist. Writes
-/// nothing.
+/// Finds what the archive has of scans that were in the folders, or below them, also behind
+/// symbolic links that are there, and are gone. Scans about which nothing can be known, because a
+/// folder cannot be searched or a disk does not answer, are not gone. Files that the archive's
+/// sources.json does not name are nobody's leftovers, and neither are the datasets in `in_use`.
+/// Throws io::Error if a folder does not exist. Writes nothing.
 Leftovers find_leftovers(const std::filesystem::path& archive,
                          const std::vector<std::filesystem::path>& folders,
                          const std::set<std::string>& in_use = {});

@@ -8,6 +8,7 @@
 #include "io/files/file_digest.hpp"
 #include "io/library/hash_library.hpp"
 #include "jobs/archive/path_text.hpp"
+#include "jobs/kinds/given_names.hpp"
 #include "jobs/kinds/merging.hpp"
 #include "jobs/kinds/partition.hpp"
 #include "jobs/kinds/triplets.hpp"
@@ -48,11 +49,11 @@ std::vector<fs::path> partition_paths(const Job& job, int partitions) {
 }
 
 /// Returns "; missing: a, b and 17 more", or an empty text.
-std::string missing_in_words(const std::vector<std::string>& missing) {
+std::string missing_in_words(const std::vector<std::string>& missing, const GivenNames& given) {
   constexpr std::size_t kMostNames = 5;
   std::string text;
   for (std::size_t i = 0; i < std::min(missing.size(), kMostNames); ++i)
-    text += (i == 0 ? "; missing: " : ", ") + missing[i];
+    text += (i == 0 ? "; missing: " : ", ") + given.name_of(missing[i]);
   if (missing.size() > kMostNames)
     text += " and " + std::to_string(missing.size() - kMostNames) + " more";
   return text;
@@ -97,6 +98,7 @@ class LibraryKind final : public TypedJobKind<LibraryJobData, LibraryJobResult> 
 
   std::optional<JobSummary> summary(const Job& job, JobState state) const override {
     const std::vector<std::string> missing = missing_models(job, state);
+    const GivenNames given(job.output);
     const std::size_t wanted = data(job).models.size();
     const std::size_t models = wanted - missing.size();
     std::string text = "library: " + job.output.string() + ": ";
@@ -105,7 +107,7 @@ class LibraryKind final : public TypedJobKind<LibraryJobData, LibraryJobResult> 
       if (!missing.empty()) text += " of " + std::to_string(wanted);
       text += " models";
       if (state == JobState::kUpToDate) text += ", up to date";
-      text += missing_in_words(missing);
+      text += missing_in_words(missing, given);
     } else {
       text += name_of(state);
     }

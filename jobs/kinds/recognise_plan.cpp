@@ -67,7 +67,7 @@ std::vector<PlannedJob> plan_recognition(const std::vector<FoundScan>& scenes,
     planned.job.kind = &recognise_kind();
     planned.job.input = scenes[i].input;
     planned.scan = scenes[i].file;
-    planned.member_bytes = scenes[i].bytes;
+    planned.member_bytes = scenes[i].bytes + digests[i].companion_bytes;
     planned.error = std::move(digests[i].error);
     data[i] = {.input_name = io::as_utf8(scenes[i].relative),
                .input_xxh3 = std::move(digests[i].xxh3),

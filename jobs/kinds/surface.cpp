@@ -281,9 +281,7 @@ class SurfaceKind final : public TypedJobKind<SurfaceJobData, SurfaceJobResult> 
 
   std::uintmax_t bytes_to_read(const Job& job) const override {
     if (data(job).sidecar_only) return 0;
-    std::error_code error;
-    const auto size = fs::file_size(job.input, error);
-    return error ? 0 : size;
+    return scan_size(job.input).bytes;
   }
 
   std::any run(const Job& job, const JobContext& context) const override {

@@ -83,7 +83,7 @@ std::vector<PlannedJob> plan_surfaces(const fs::path& archive, const std::vector
                                       .input_xxh3 = digests[i].xxh3,
                                       .parameters = parameters};
     planned.scan = scans[i].file;
-    planned.member_bytes = scans[i].bytes;
+    planned.member_bytes = scans[i].bytes + digests[i].companion_bytes;
     planned.error = std::move(digests[i].error);
     planned.inputs_are_there = true;
     unnamed.push_back({scans[i].name, scans[i].file, std::move(digests[i].xxh3)});

@@ -1,6 +1,7 @@
 #include "jobs/plan/job.hpp"
 
 #include "io/files/read_error.hpp"
+#include "jobs/archive/names.hpp"
 #include "jobs/plan/job_kind.hpp"
 
 namespace semigeo::jobs {
@@ -12,7 +13,7 @@ std::string job_id(const Job& job) {
 }
 
 std::string shown_name(const Job& job) {
-  return job.kind->words().stands_for_scan ? job.name : job_id(job);
+  return job.kind->words().stands_for_scan ? given_name(job.input, job.name) : job_id(job);
 }
 
 const fs::path& subject_of(const Job& job) {

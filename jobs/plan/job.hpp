@@ -22,8 +22,8 @@ struct Job {
 /// Returns "surface <name>": the name of the job in the journal, in logs and in the graph.
 std::string job_id(const Job& job);
 
-/// Returns the name by which users know the job: the name alone if the job stands for one scan,
-/// else its identifier.
+/// Returns the name by which users know the job: what they call the scan (given_name) if the job
+/// stands for one, otherwise its identifier.
 std::string shown_name(const Job& job);
 
 /// Returns the file that messages about the job name: its input, or its output if the job merges

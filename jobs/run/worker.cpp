@@ -164,7 +164,7 @@ void limit_address_space([[maybe_unused]] std::uint64_t bytes) {
 
 /// Returns the fault that SEMIGEO_TEST_FAULTS names for this job, or an empty text.
 std::string fault_of(const Job& job) {
-  const std::string name = shown_name(job);
+  const std::string name = job.kind->words().stands_for_scan ? job.name : job_id(job);
   const char* faults = std::getenv("SEMIGEO_TEST_FAULTS");
   std::string_view rest = faults == nullptr ? "" : faults;
   while (!rest.empty()) {

@@ -75,9 +75,12 @@ JobReply reply_of(const TaskResult& result) {
                  .error = outcome.error,
                  .result = result.result,
                  .cpu_seconds = outcome.cpu_seconds,
-                 .peak_bytes = outcome.peak_bytes};
+                 .peak_bytes = outcome.peak_bytes,
+                 .write_error = outcome.write_error};
   if (outcome.state == JobState::kFailed || outcome.state == JobState::kSkipped)
     reply.kind = JobReply::Kind::kFailed;
+  // The task has stopped at this job, because nothing can be written any more. So will the run.
+  if (outcome.write_error != 0 && !outcome.error.empty()) reply.kind = JobReply::Kind::kFailed;
   if (is_made(outcome.state)) reply.kind = JobReply::Kind::kDone;
   return reply;
 }
@@ -85,7 +88,8 @@ JobReply reply_of(const TaskResult& result) {
 TaskResult result_of(JobReply reply) {
   TaskResult result{.outcome = {.error = std::move(reply.error),
                                 .cpu_seconds = reply.cpu_seconds,
-                                .peak_bytes = reply.peak_bytes},
+                                .peak_bytes = reply.peak_bytes,
+                                .write_error = reply.write_error},
                     .result = std::move(reply.result)};
   if (reply.kind == JobReply::Kind::kDone) result.outcome.state = JobState::kDone;
   if (reply.kind == JobReply::Kind::kFailed) result.outcome.state = JobState::kFailed;

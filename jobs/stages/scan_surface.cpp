@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "io/files/error.hpp"
-#include "io/files/file_digest.hpp"
 #include "io/scans/scan_reader.hpp"
 
 namespace semigeo::jobs {
@@ -51,7 +50,7 @@ std::string to_json(const kernels::SurfaceRepairs& repairs) {
 ScanSurface read_surface(const std::filesystem::path& path, const std::string& xxh3,
                          double depth_jump, const kernels::Welding& welding) {
   io::Scan scan = io::read_scan(path, {.depth_jump = depth_jump});
-  if (io::xxh3_of_file(path) != xxh3)
+  if (scan.xxh3 != xxh3)
     throw io::Error(path, "", "the file changed while it was read", "run again");
   ScanSurface result;
   result.built = kernels::build_surface(std::move(scan.mesh), welding);

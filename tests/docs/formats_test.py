@@ -102,7 +102,7 @@ class FormatsTest(SemigeoTest):
             self.assert_named(set(event) | {event["event"]}, text)
         self.assert_named(json.loads((self.archive / "estimates.json").read_text()), text)
         first = (self.archive / "digests.txt").read_text().splitlines()[0]
-        self.assertRegex(first, r"^semigeo-digests 1 \d+ [0-9a-f]{32}$")
+        self.assertRegex(first, r"^semigeo-digests 2 \d+ [0-9a-f]{32}$")
 
     def assert_document_named(self, *arguments, code=0):
         document = json.loads(self.semigeo(*arguments, code=code).stdout)

@@ -97,7 +97,7 @@ class ContainersTest(SemigeoTest):
         document = json.loads(self.semigeo("info", box, "--json").stdout)
         self.assertEqual([m["kind"] for m in document["members"]], ["scan", "scan", "no scan"])
         shown = self.semigeo("run", box, "--output", self.archive, "--dry-run").stdout
-        self.assertIn("box.zip__part__a.ply: would run", shown)
+        self.assertIn("box.zip/part/a.ply: would run", shown)
         self.assertIn("2 scans: 2 would run", shown)
         self.semigeo("run", box / "part/a.ply", "--output", self.archive, "--levels", 2, "--library")
         process = self.semigeo("recognise", box / "part/a.ply", "--library", self.archive, "--json")

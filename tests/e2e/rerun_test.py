@@ -1,6 +1,7 @@
 """What a second run does: nothing, or exactly what depends on a change; and that neither threads nor
 place nor time show in the bytes."""
 
+import json
 import os
 import resource
 import shutil
@@ -82,6 +83,35 @@ class RerunTest(SemigeoTest):
                 self.assertEqual(sorted(elsewhere.iterdir()), before)
                 (self.archive / name).unlink()
                 elsewhere.rename(self.archive / name)
+
+    def test_a_file_beside_a_scan_belongs_to_it(self):
+        points, triangles = icosphere(3)
+        (self.scans / "part").mkdir()
+        numbers = self.scans / "part/b 1.bin"
+        indices = triangles.astype("<u2").tobytes()
+
+        def write(radius):
+            numbers.write_bytes((radius * points).astype("<f4").tobytes() + indices)
+
+        write(1)
+        size = numbers.stat().st_size
+        (self.scans / "b.gltf").write_text(json.dumps({
+            "asset": {"version": "2.0"}, "buffers": [{"uri": "part/b%201.bin", "byteLength": size}],
+            "bufferViews": [{"buffer": 0, "byteLength": size - len(indices)},
+                            {"buffer": 0, "byteOffset": size - len(indices), "byteLength": len(indices)}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": len(points), "type": "VEC3"},
+                          {"bufferView": 1, "componentType": 5123, "count": triangles.size, "type": "SCALAR"}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}]}))
+        document = self.run_scans("--levels", 1)
+        self.assertEqual((document["done"], document["failed"]), (4, 0))
+        self.assertEqual(self.run_scans("--levels", 1)["up_to_date"], 4)
+        write(2)
+        self.assertEqual(self.states(self.run_scans("--levels", 1))["b.gltf"], "done")
+        numbers.unlink()
+        document = self.run_scans("--levels", 1, code=1)
+        self.assertEqual((document["up_to_date"], document["failed"]), (3, 1))
+        error, = (scan["error"] for scan in document["scans"] if scan["state"] == "failed")
+        self.assertIn("'part/b%201.bin', and there is no such file", error)
 
     def test_a_touched_scan_is_up_to_date(self):
         self.run_scans("--levels", 2)

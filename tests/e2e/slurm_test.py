@@ -200,6 +200,20 @@ class SlurmTest(SemigeoTest):
             self.assertTrue(line)
         return line
 
+    def test_a_full_disk_stops_the_run_with_its_sentence(self):
+        self.archive.mkdir()
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "none", self.archive], capture_output=True)
+        if mounted.returncode != 0:
+            self.skipTest("mounting a disk is not permitted here")
+        self.addCleanup(subprocess.run, ["umount", "-l", self.archive], check=True)
+        for seed in range(8):
+            write_ply(self.scans / f"{seed}.ply", boulder(4, seed))
+        process = self.start("--scans-per-task", "8")
+        document = self.end_of(process, 75)
+        self.assertIn("No space left on device; free some space and run again", document["stopped"])
+        self.assertEqual(document["failed"], 0)
+        self.assertEqual(document["done"] + document["not_run"], 8)
+
     def test_the_reason_why_tasks_wait_is_told(self):
         self.write_scans("a")
         process = self.start("--slurm-option", "hold")

@@ -317,12 +317,37 @@ TEST_F(GltfReader, RefusesOtherTypes) {
                {"'nodes' is not an array"});
 }
 
+TEST_F(GltfReader, ReadsBuffersInFilesBesideIt) {
+  const GltfParts parts = square_parts();
+  std::filesystem::create_directories(folder_ / "part");
+  write_file(folder_ / "part/a b.bin", parts.bytes + "more");
+  const std::string json = parts.json(R"(,"uri":"./part/a%20b.bin")");
+  EXPECT_EQ(read("a.gltf", json).mesh.triangles, kTwo);
+  EXPECT_EQ(read("a.gltf.gz", gzip(json)).mesh.triangles, kTwo);
+  EXPECT_EQ(read("a.glb", glb(json, "")).mesh.triangles, kTwo);
+  write_file(folder_ / "part/a b.bin", parts.bytes.substr(1));
+  expect_parts(error("a.gltf", json), {"buffers[0]", "promises 60 bytes, but has only 59"});
+}
+
+TEST_F(GltfReader, SparseElementsMayBeMoreThanTheBytesOfItsJson) {
+  GltfParts parts;
+  const int count = 9'000;
+  const std::string members = sparse(parts, {1, 2});
+  const std::string whole = parts.bytes + std::string(count, '\0');
+  parts.bytes = whole;
+  parts.add_primitive(parts.add_accessor(5126, count, "VEC3", members));
+  write_file(folder_ / "a.bin", whole);
+  EXPECT_EQ(read("a.gltf", parts.json(R"(,"uri":"a.bin")")).mesh.points.size(), count);
+}
+
 TEST_F(GltfReader, RefusesOtherFiles) {
   const GltfParts parts = square_parts();
   expect_parts(error("a.gltf", parts.json(R"(,"uri":"a b.bin")")),
-               {"buffers[0]", "stand in another file: 'a b.bin'", ".glb"});
+               {"buffers[0]", "'a b.bin', and there is no such file", "beside the scan"});
   expect_parts(error("a.gltf", parts.json(R"(,"uri":"https://example.org/a.bin")")),
-               {"buffers[0]", "on the network"});
+               {"buffers[0]", "on the network", ".glb"});
+  expect_parts(error("a.gltf", parts.json(R"(,"uri":"../a.bin")")),
+               {"buffers[0]", "outside of the folder", ".glb"});
   expect_parts(error("a.gltf", parts.json(R"(,"uri":"data:,abc")")), {"not in Base64"});
   expect_parts(error("a.gltf", parts.json(R"(,"uri":"data:;base64,A*")")), {"Base64", "damaged"});
   expect_parts(error("a.gltf", parts.json()), {"buffers[0]", "no bytes"});

@@ -9,6 +9,7 @@
 
 #include "engine/run_context.hpp"
 #include "io/files/file_digest.hpp"
+#include "io/scans/companions.hpp"
 #include "jobs/stages/surface_job.hpp"
 #include "tests/support/containers.hpp"
 #include "tests/support/scan_file.hpp"
@@ -109,6 +110,59 @@ TEST_F(DigestCacheTest, MembersOfAContainerAreReadOnceAndRemembered) {
   fs::remove(folder_ / "box.tgz");
   run({scan_});
   EXPECT_EQ(file().find("box.tgz"), std::string::npos) << file();
+}
+
+TEST_F(DigestCacheTest, CompanionsOfAScanBelongToIt) {
+  const fs::path scan = folder_ / "a.gltf";
+  set_text(scan, R"({"buffers":[{"uri":"a.bin"},{"uri":"b.bin"}]})");
+  set_text(folder_ / "a.bin", "one");
+  const auto digest = [&] { return run({scan})[0].xxh3; };
+  const std::string first = digest();
+  EXPECT_EQ(first, io::xxh3_of_scan(scan));
+  EXPECT_TRUE(is_remembered(folder_ / "a.bin"));
+  forge(first, forged_);
+  EXPECT_EQ(digest(), forged_) << "nothing has changed";
+  set_text(folder_ / "a.bin", "two");
+  const std::string second = digest();
+  EXPECT_EQ(second, io::xxh3_of_scan(scan));
+  forge(second, forged_);
+  set_text(folder_ / "b.bin", "it was absent");
+  const std::string third = digest();
+  EXPECT_EQ(third, io::xxh3_of_scan(scan));
+  EXPECT_NE(third, second);
+  run({scan_});  // other scans do not make it forget
+  forge(third, forged_);
+  EXPECT_EQ(digest(), forged_);
+  fs::remove(folder_ / "b.bin");
+  EXPECT_EQ(digest(), second);
+}
+
+TEST_F(DigestCacheTest, CompanionsThatChangedAMomentAgoAreNotRemembered) {
+  const fs::path scan = folder_ / "a.gltf";
+  set_text(scan, R"({"buffers":[{"uri":"a.bin"}]})");
+  set_text(folder_ / "a.bin", "one");
+  EXPECT_EQ(run({scan}, 1, DigestCache::system_clock)[0].xxh3, io::xxh3_of_scan(scan));
+  EXPECT_FALSE(is_remembered(scan));
+}
+
+TEST_F(DigestCacheTest, CompanionsOfMembersAreMembers) {
+  const std::string json = R"({"buffers":[{"uri":"a.bin"},{"uri":"none.bin"}]})";
+  const auto digests = [&](const std::string& bytes) {
+    tests::write_container(folder_ / "box.tgz", "pax",
+                           {{.name = "part/a.bin", .bytes = bytes},
+                            {.name = "part/a.gltf", .bytes = json},
+                            {.name = "b.ply", .bytes = "second"}},
+                           "gzip");
+    DigestCache cache = DigestCache::read(folder_.path(), in_an_hour);
+    return cache.scan_digests(find_scans({folder_ / "box.tgz"}, folder_ / "none").scans, 1);
+  };
+  const auto first = digests("one");
+  ASSERT_EQ(first.size(), 2u);
+  EXPECT_EQ(first[0].xxh3, io::xxh3_of_text("second"));
+  EXPECT_EQ(first[1].xxh3, io::xxh3_of_scan(folder_ / "box.tgz/part/a.gltf"));
+  EXPECT_EQ(first[1].companion_bytes, 3u);
+  EXPECT_EQ(first[1].companions.size(), 2u);
+  EXPECT_NE(digests("two")[1].xxh3, first[1].xxh3);
 }
 
 TEST_F(DigestCacheTest, WhatChangedAMomentAgoIsNotRemembered) {

@@ -44,6 +44,13 @@ TEST_F(ScanSizeTest, LooksIntoCompressedFiles) {
   EXPECT_EQ(size.bytes, std::filesystem::file_size(path));
 }
 
+TEST_F(ScanSizeTest, CountsTheFilesBesideAScan) {
+  std::ofstream(folder_ / "a.bin") << "twelve bytes";
+  const std::string json = R"({"buffers":[{"uri":"a.bin"}]})";
+  std::ofstream(folder_ / "a.gltf") << json;
+  EXPECT_EQ(scan_size(folder_ / "a.gltf").bytes, json.size() + 12);
+}
+
 TEST_F(ScanSizeTest, OfWhatCannotBeReadNothingIsTold) {
   EXPECT_EQ(scan_size(folder_ / "none.ply").format, "");
   EXPECT_EQ(format("a.txt", "text"), "");

@@ -101,6 +101,18 @@ TEST_F(LeftoversTest, WhatBelongsToOtherFoldersStays) {
   EXPECT_EQ(names({"in/../in/day/"}), Names{"c.ply"});
 }
 
+TEST_F(LeftoversTest, FoldersBehindLinksBelongToTheFolderOfTheLink) {
+  fs::create_directory_symlink(folder_ / "else", folder_ / "in/day/link");
+  fs::create_directory_symlink(folder_ / "in", folder_ / "else/back");
+  fs::remove(folder_ / "else/d.ply");
+  EXPECT_EQ(names({"in"}), Names{"d.ply"});
+  EXPECT_EQ(find({"in"}).emptied, std::vector{folder_ / "else"}) << "its disk may not be mounted";
+  EXPECT_EQ(names({"in/day/link"}), Names{"d.ply"});
+  file("else/e.ply");
+  fs::remove(folder_ / "in/day/link");
+  EXPECT_EQ(names({"in"}), Names{}) << "nothing leads there any more";
+}
+
 TEST_F(LeftoversTest, WhatIsInUseUnderItsNameStays) {
   fs::remove(folder_ / "in/b.ply");
   EXPECT_EQ(names({"in"}, {"b.ply"}), Names{});

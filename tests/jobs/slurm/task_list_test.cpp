@@ -110,9 +110,13 @@ TEST_F(TaskFileTest, ResultsComeBackAndDamagedLinesAreNone) {
   failed.state = JobState::kFailed;
   failed.error = "b.ply: is no scan";
   results["c"].outcome.state = JobState::kNotRun;
+  JobOutcome& stopped = results["d"].outcome;
+  stopped.state = JobState::kNotRun;
+  stopped.error = "d.vtkhdf: cannot be written";
+  stopped.write_error = ENOSPC;
   const std::string text = results_text(results);
-  const TaskResults read = read_results(write("results", text + "{\"name\":\"d\""));
-  ASSERT_EQ(read.size(), 3u);
+  const TaskResults read = read_results(write("results", text + "{\"name\":\"e\""));
+  ASSERT_EQ(read.size(), 4u);
   const JobOutcome& a = read.at("a \"quoted\"").outcome;
   EXPECT_EQ(a.state, JobState::kDone);
   EXPECT_EQ(read.at("a \"quoted\"").result.at("letters"), 17);
@@ -124,6 +128,9 @@ TEST_F(TaskFileTest, ResultsComeBackAndDamagedLinesAreNone) {
   EXPECT_EQ(read.at("b").outcome.state, JobState::kFailed);
   EXPECT_EQ(read.at("b").outcome.error, failed.error);
   EXPECT_EQ(read.at("c").outcome.state, JobState::kNotRun);
+  EXPECT_EQ(read.at("d").outcome.state, JobState::kFailed) << "the run stops at it, too";
+  EXPECT_EQ(read.at("d").outcome.error, stopped.error);
+  EXPECT_EQ(read.at("d").outcome.write_error, ENOSPC);
   EXPECT_TRUE(read_results(folder_ / "none").empty());
 }
 

@@ -1,9 +1,10 @@
-#include "jobs/cli/given_names.hpp"
+#include "jobs/kinds/given_names.hpp"
 
 #include "io/files/error.hpp"
+#include "jobs/archive/names.hpp"
 #include "jobs/kinds/library_plan.hpp"
 
-namespace semigeo::jobs::cli {
+namespace semigeo::jobs {
 
 namespace fs = std::filesystem;
 
@@ -23,8 +24,13 @@ fs::path GivenNames::scan_of(const std::string& model) const {
 }
 
 std::string GivenNames::shown(const std::string& model) const {
-  const std::string given = scan_of(model).filename().string();
-  return given.empty() || model.ends_with(given) ? model : given + " (" + model + ")";
+  const std::string given = name_of(model);
+  const std::string own = " (" + model + ")";
+  return given == model || given.ends_with(own) ? given : given + own;
 }
 
-}  // namespace semigeo::jobs::cli
+std::string GivenNames::name_of(const std::string& model) const {
+  return given_name(scan_of(model), model);
+}
+
+}  // namespace semigeo::jobs

@@ -5,7 +5,7 @@
 
 #include "jobs/archive/sources.hpp"
 
-namespace semigeo::jobs::cli {
+namespace semigeo::jobs {
 
 /// Knows the files of which the models of an archive's library were made. Names of models are safe
 /// names of datasets ("____7.ply-f838e8b1"); people know their scans by the names that they gave
@@ -18,12 +18,15 @@ class GivenNames {
 
   /// Returns the path of the model's scan; empty if it is not known.
   std::filesystem::path scan_of(const std::string& model) const;
-  /// Returns the model for people: its name, after the file name of its scan if the name of the
-  /// model does not end with it: "像 7.ply (____7.ply-f838e8b1)".
+  /// Returns how people call the scan of the model (given_name), or the name of the model if its
+  /// scan is not known.
+  std::string name_of(const std::string& model) const;
+  /// Returns what people call the scan, and behind it the name of the model if that is another:
+  /// "像 7.ply (____7.ply-f838e8b1)".
   std::string shown(const std::string& model) const;
 
  private:
   Sources sources_;
 };
 
-}  // namespace semigeo::jobs::cli
+}  // namespace semigeo::jobs
