@@ -64,9 +64,9 @@ namespace {
 
 // The costs of a page: the program itself, reading and compressing a dataset, decimating it.
 constexpr double kBaseBytes = 80e6;
-constexpr double kBytesPerByte = 6;
+constexpr double kBytesPerByte = 3;
 constexpr double kBaseSeconds = 0.05;
-constexpr double kSecondsPerByte = 4e-8;
+constexpr double kSecondsPerByte = 7e-8;
 
 Estimate estimate_of_page(double bytes) {
   return {.vertices = 0,
@@ -143,7 +143,7 @@ class ScanPageKind final : public PageKind<PageJobData, PageResult> {
 std::set<fs::path> found_models(const json& recognised, const fs::path& archive) {
   std::set<fs::path> datasets;
   for (const json& object : recognised.at("objects"))
-    datasets.insert(dataset_path(archive, object.at("model").get<std::string>()));
+    datasets.insert(dataset_of_model(archive, object.at("model").get<std::string>()));
   return datasets;
 }
 

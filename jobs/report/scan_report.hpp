@@ -9,7 +9,7 @@
 namespace semigeo::jobs {
 
 /// The version of what a scan's page shows. It is part of the page's key.
-inline constexpr std::string_view kScanPageVersion = "scan page 2";
+inline constexpr std::string_view kScanPageVersion = "scan page 3";
 
 /// Says how much of a dataset a page gets, so that the page stays below 6 MB.
 struct ScanPageLimits {
@@ -20,16 +20,16 @@ struct ScanPageLimits {
 
 /// Returns what the page of a scan shows of its dataset: header, selection and levels.
 ///
-/// A level is decimated by `kernels::decimate` if it has more vertices than the limits admit; its
-/// fields are those of the vertices that are left. Arrays are base64 of little-endian numbers:
-/// positions are 16-bit fractions of the level's box, curvatures are floats (NaN at vertices
-/// without a valid patch), completeness is in 255ths. Features are the most prominent of each kind,
-/// and points of contours are thinned out, if there are more of them than vertices. `limits` of a
-/// level are the 98th percentiles of |K| and |H| over its valid vertices, and `histograms` count
-/// the values between minus and plus these limits.
+/// A level is decimated (jobs/report/shown_surface.hpp) if it has more vertices than the limits
+/// admit; its fields are those of the vertices that are left. Arrays are base64 of little-endian
+/// numbers: positions are 16-bit fractions of the level's box, curvatures are floats (NaN at
+/// vertices without a valid patch), completeness is in 255ths. Features are the most prominent of
+/// each kind, and points of contours are thinned out, if there are more of them than vertices.
+/// `limits` of a level are the 98th percentiles of |K| and |H| over its valid vertices, and
+/// `histograms` count the values between minus and plus these limits.
 ///
-/// Keeps one level in memory. The cost is that of reading the levels, and 3 us for each vertex that
-/// decimation removes. Throws io::Error if the dataset cannot be read.
+/// Keeps one level in memory. The cost is that of reading the levels and of `decimated`. Throws
+/// io::Error if the dataset cannot be read.
 nlohmann::json scan_report(const io::Dataset& dataset, const ScanPageLimits& limits = {});
 
 }  // namespace semigeo::jobs

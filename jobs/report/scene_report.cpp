@@ -183,7 +183,7 @@ class SceneReader {
     for (json& object : document_.at("objects"))
       if (object.at("model") == name) object["shape"] = place;
     try {
-      PlacedSurface model = read_model(dataset_path(files_.archive, name), digest);
+      PlacedSurface model = read_model(dataset_of_model(files_.archive, name), digest);
       add_residuals(name, model);
       model.surface =
           decimated(std::move(model.surface),
@@ -202,7 +202,7 @@ class SceneReader {
         const auto model = candidate.at("model").get<std::string>();
         if (titles.contains(model)) continue;
         try {
-          titles[model] = io::Dataset(dataset_path(files_.archive, model)).header().input_name;
+          titles[model] = io::Dataset(dataset_of_model(files_.archive, model)).header().input_name;
         } catch (const io::Error&) {
           titles[model] = model;
         }
@@ -229,6 +229,10 @@ class SceneReader {
 };
 
 }  // namespace
+
+fs::path dataset_of_model(const fs::path& archive, const std::string& model) {
+  return dataset_path(archive, fs::path(model).filename().string());
+}
 
 json scene_report(const SceneFiles& files, const ScenePageLimits& limits) {
   try {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 #include <string_view>
 
 namespace semigeo::jobs {
@@ -16,6 +17,11 @@ struct SceneFiles {
   std::filesystem::path scene;       ///< The scan or dataset; empty if nobody knows where it is.
   std::filesystem::path archive;     ///< It has the models' datasets.
 };
+
+/// Returns the place of the dataset of a model in its archive. A recognised file may come from
+/// anywhere, so only the last part of a name that is a path counts.
+std::filesystem::path dataset_of_model(const std::filesystem::path& archive,
+                                       const std::string& model);
 
 /// Says how much of a scene and its models a page gets, so that the page stays below 6 MB.
 struct ScenePageLimits {

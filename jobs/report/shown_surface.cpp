@@ -1,13 +1,19 @@
 #include "jobs/report/shown_surface.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <utility>
 
 #include "io/files/base64.hpp"
 #include "io/files/error.hpp"
+#include "kernels/repair/coarsening.hpp"
 #include "kernels/repair/decimation.hpp"
+#include "kernels/repair/remeshing.hpp"
+#include "kernels/surface/vertex_rows.hpp"
 
 namespace semigeo::jobs {
 
@@ -43,13 +49,57 @@ kernels::Surface connected(ShownSurface shown) {
   return surface;
 }
 
+namespace {
+
+/// Returns the normals of the vertices: the means of those of their faces, weighted by area.
+std::vector<Vector3f> normals_of(const kernels::Surface& surface) {
+  std::vector<Vector3f> normals(surface.points.size(), Vector3f::Zero());
+  for (const kernels::Triangle& t : surface.triangles) {
+    const Vector3f& a = surface.points[t[0]];
+    const Vector3f normal = (surface.points[t[1]] - a).cross(surface.points[t[2]] - a);
+    for (const std::int32_t corner : t) normals[corner] += normal;
+  }
+  for (Vector3f& normal : normals) normal.normalize();
+  return normals;
+}
+
+/// Returns the surface with about this number of vertices. It is several times as fast as decimation,
+/// and keeps less of the shape.
+ShownSurface coarsened(ShownSurface shown, std::int64_t vertices) {
+  const auto all = static_cast<double>(shown.points.size());
+  kernels::Surface surface = connected(std::move(shown));
+  const double length =
+      kernels::mean_edge_length(surface) * std::sqrt(all / static_cast<double>(vertices));
+  kernels::LevelMesh mesh;
+  mesh.normals = normals_of(surface);
+  mesh.part = std::move(surface.part);
+  mesh.part_count = surface.part_count;
+  for (const Vector3f& p : surface.points) mesh.points.emplace_back(p.x(), p.y(), p.z(), 0.0f);
+  mesh.initial_points = std::move(surface.points);
+  mesh.source.resize(mesh.points.size());
+  std::iota(mesh.source.begin(), mesh.source.end(), 0);
+  mesh.connectivity = std::move(static_cast<kernels::Connectivity&>(surface));
+  kernels::coarsen(mesh, std::vector<double>(mesh.part_count, length));
+  ShownSurface result{.points = {}, .triangles = std::move(mesh.connectivity.triangles)};
+  for (const Eigen::Vector4f& p : mesh.points) result.points.push_back(p.head<3>());
+  result.rows = std::move(mesh.source);
+  return result;
+}
+
+}  // namespace
+
 ShownSurface decimated(ShownSurface shown, std::int64_t vertices) {
-  if (static_cast<std::int64_t>(shown.points.size()) <= vertices) return shown;
+  constexpr std::int64_t kCoarsened = 4;
+  if (std::ssize(shown.points) <= vertices) return shown;
+  if (std::ssize(shown.points) > 2 * kCoarsened * vertices)
+    shown = coarsened(std::move(shown), kCoarsened * vertices);
+  const std::vector<std::int32_t> rows = std::move(shown.rows);
   kernels::DecimatedSurface small = kernels::decimate(
       connected(std::move(shown)), {.target_vertices = vertices, .measure = false});
   return {.points = std::move(small.surface.points),
           .triangles = std::move(small.surface.triangles),
-          .rows = std::move(small.source_vertex)};
+          .rows = rows.empty() ? std::move(small.source_vertex)
+                               : kernels::gathered(rows, small.source_vertex)};
 }
 
 ShownBox box_of(const std::vector<Vector3f>& points) {

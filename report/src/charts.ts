@@ -82,7 +82,8 @@ export function lineChart(chart: Chart, points: Point[], mark?: { place: number;
     draw(svg, "line", { x1: x, y1: top, x2: x, y2: height - bottom, class: "mark-line" });
     draw(svg, "circle", { cx: x, cy: placeY(chart, p.y), r: 6, class: "mark-dot" });
     const isRight = x > width / 2;
-    draw(svg, "text", { x: x + (isRight ? -8 : 8), y: top + 8, "text-anchor": isRight ? "end" : "start", class: "mark-text" },
+    const isHigh = placeY(chart, p.y) < (top + height - bottom) / 2;
+    draw(svg, "text", { x: x + (isRight ? -8 : 8), y: isHigh ? height - bottom - 8 : top + 10, "text-anchor": isRight ? "end" : "start", class: "mark-text" },
       mark.text);
   }
   return svg;
