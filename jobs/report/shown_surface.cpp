@@ -63,8 +63,8 @@ std::vector<Vector3f> normals_of(const kernels::Surface& surface) {
   return normals;
 }
 
-/// Returns the surface with about this number of vertices. It is several times as fast as decimation,
-/// and keeps less of the shape.
+/// Returns the surface with about this number of vertices. It is several times as fast as
+/// decimation, and keeps less of the shape.
 ShownSurface coarsened(ShownSurface shown, std::int64_t vertices) {
   const auto all = static_cast<double>(shown.points.size());
   kernels::Surface surface = connected(std::move(shown));
