@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "io/files/binary_load.hpp"
@@ -126,7 +128,7 @@ class OffText {
 
   void read_vertex() {
     const Place place = this->place();
-    const double x = scanner_.number("the x coordinate");
+    const double x = first_x_ ? *std::exchange(first_x_, {}) : scanner_.number("the x coordinate");
     const double y = next_number("the y coordinate");
     const double z = next_number("the z coordinate");
     const double w = header_.homogeneous ? next_number("the fourth coordinate") : 1;
@@ -164,8 +166,21 @@ class OffText {
       scanner_.fail("the header has a negative count", kMendLine);
     builder_.promise_points(counts.vertices, 5, place());  // "0 0 0"
     builder_.promise_faces(counts.faces, 1, place());      // "0"
-    scanner_.next_line();                                  // passes over the number of edges
+    pass_over_edges();
     return counts;
+  }
+
+  /// Passes over the number of edges. It may stand on a line of its own, and some writers leave it
+  /// out: a line of more values is the first vertex.
+  void pass_over_edges() {
+    if (scanner_.at_line_end() && scanner_.skip_to_content()) {
+      const double value = scanner_.number("the x coordinate");
+      if (!scanner_.at_line_end()) {
+        first_x_ = value;
+        return;
+      }
+    }
+    scanner_.next_line();
   }
 
   void begin_line(std::string_view what, std::int64_t promised, std::int64_t found) {
@@ -185,7 +200,8 @@ class OffText {
   TextScanner& scanner_;
   ScanBuilder& builder_;
   const OffHeader& header_;
-  bool spread_ = false;  // values stand on lines of their own
+  std::optional<double> first_x_;  // of the first vertex, if it was read
+  bool spread_ = false;            // values stand on lines of their own
   std::vector<std::int64_t> corners_;
 };
 

@@ -25,6 +25,17 @@ TEST_F(OffReader, ValuesMayStandOnLinesOfTheirOwn) {
   EXPECT_EQ(scan.mesh.triangles, (Triangles{{0, 1, 2}}));
 }
 
+TEST_F(OffReader, TheNumberOfEdgesMayStandAloneOrBeAbsent) {
+  const std::string body = "7 8 9\n1 0 0\n0 1 0\n3 0 1 2";
+  for (const std::string counts :
+       {"3\n1\n0\n", "3 1\n0\n", "3\n1 0\n", "3 1 0\n", "3 1\n", "3\n1\n\n# x\n"}) {
+    const Scan scan = read("a.off", "OFF\n" + counts + body);
+    EXPECT_EQ(point(scan, 0), Eigen::Vector3d(7, 8, 9)) << counts;
+    EXPECT_EQ(point(scan, 1), Eigen::Vector3d(1, 0, 0)) << counts;
+    EXPECT_EQ(scan.mesh.triangles, (Triangles{{0, 1, 2}}));
+  }
+}
+
 TEST_F(OffReader, IgnoresWhatThePrefixesAdd) {
   for (const std::string keyword : {"COFF", "NOFF", "CNOFF", "NCOFF", "STOFF", "STCNOFF", "OFF"}) {
     const Scan scan = read("a.off", keyword +
