@@ -194,6 +194,18 @@ const checks = {
     console.log(await page.textContent("#python"));
   },
 
+  /// The page of a scan in a browser without WebGL: PAGE.
+  async plain(page) {
+    assert.equal(await page.isVisible("#no-view"), true);
+    assert.equal(await page.isVisible("#canvas"), false);
+    assert.equal(await page.locator("#curve svg").count(), 1);
+    const level = await page.textContent("#level-text");
+    await page.focus("#level");
+    await page.keyboard.press("Home");
+    assert.notEqual(await page.textContent("#level-text"), level);
+    assert.match(await page.textContent("#python"), /^import h5py\n/);
+  },
+
   /// The page of a scene: PAGE and, as JSON, its title, the models that were found, and the first matrix.
   async scene(page, wanted) {
     const { title, models, matrix } = JSON.parse(wanted);
@@ -265,15 +277,17 @@ const checks = {
   },
 };
 
+const graphics = check === "plain" ? ["--disable-3d-apis"]
+  : ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 const browser = await chromium.launch({ executablePath: browserPath,
-  args: ["--no-sandbox", "--disable-dev-shm-usage", "--use-gl=angle", "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader"],
+  args: ["--no-sandbox", "--disable-dev-shm-usage", ...graphics],
 });
 const complaints = [];
 try {
   const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
   page.setDefaultTimeout(60000);
-  page.on("console", message => complaints.push(`console: ${message.type()}: ${message.text()}`));
+  // three.js complains if there is no WebGL.
+  if (check !== "plain") page.on("console", message => complaints.push(`console: ${message.type()}: ${message.text()}`));
   page.on("pageerror", error => complaints.push(`error: ${error.message}`));
   page.on("dialog", dialog => {
     complaints.push(`dialog: ${dialog.message()}`);

@@ -184,6 +184,7 @@ class ReportTest(SemigeoTest):
         page, = (self.archive / "report/scans").iterdir()
         self.assertLess(page.stat().st_size, 6e6)
         code = self.browse("scan", page, json.dumps({"title": IMAGE}))
+        self.browse("plain", page)
         # The lines of Python that the page shows read this dataset.
         subprocess.run([sys.executable, "-B", "-c", code + "assert H.ndim == 1 and len(H) > 1000"], cwd=self.archive,
                        check=True)
