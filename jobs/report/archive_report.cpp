@@ -104,6 +104,13 @@ io::Error no_archive(const fs::path& folder) {
           "give the folder that was --output of a run"};
 }
 
+/// Returns the state of the last run. The run that makes this page is still running, but it has
+/// ended in all other things.
+std::string shown_state(const ArchiveStatus& status, const RunHistory& history) {
+  const bool is_at_pages = status.is_running() && history.running.empty();
+  return is_at_pages ? "ended" : state_of(status);
+}
+
 class ReportReader {
  public:
   ReportReader(const fs::path& archive, const fs::path& folder)
@@ -140,9 +147,7 @@ class ReportReader {
   nlohmann::json run() const {
     if (history_.run.started.empty()) return {{"state", state_of(status_)}};
     nlohmann::json run = figures_of(history_.night);
-    // The run that makes this page is still running, but it has ended in all other things.
-    const bool is_at_pages = status_.is_running() && history_.running.empty();
-    run["state"] = is_at_pages ? "ended" : state_of(status_);
+    run["state"] = shown_state(status_, history_);
     return run;
   }
 
@@ -273,7 +278,8 @@ std::vector<std::string> scene_names(const fs::path& archive) {
 }
 
 std::string archive_digest(const fs::path& archive, const fs::path& folder) {
-  std::string content = read_history(archive).digest;
+  const RunHistory history = read_history(archive);
+  std::string content = history.digest + shown_state(status_of(archive), history);
   const auto add = [&](const std::string& text) { content.append("\n").append(text); };
   const std::vector<fs::path> datasets = dataset_files(archive / "scans");
   std::error_code ignored;
