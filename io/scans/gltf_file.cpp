@@ -25,9 +25,11 @@ std::int64_t load_u32(std::string_view bytes, std::int64_t at) {
   return load<std::uint32_t>(bytes.data() + at, std::endian::little);
 }
 
-/// Returns whether an extension that the file requires changes nothing about the surface.
-bool is_harmless(std::string_view extension) {
-  if (extension == "KHR_mesh_quantization") return true;
+/// Returns whether an extension that the file requires is read, or changes nothing about the
+/// surface.
+bool is_known(std::string_view extension) {
+  if (extension == "KHR_mesh_quantization" || extension == "KHR_draco_mesh_compression")
+    return true;  // both are read
   for (const std::string_view start :
        {"KHR_materials_", "KHR_texture_", "KHR_lights_", "KHR_xmp", "KHR_animation_",
         "EXT_texture_", "EXT_lights_", "MSFT_texture_", "ADOBE_materials_", "AGI_stk_",
@@ -116,10 +118,7 @@ void GltfFile::check_extensions() const {
     if (extension == kMeshopt)
       throw Error(path_, "", "its meshes are compressed by meshopt, which is not supported",
                   "export the scan without compression (EXT_meshopt_compression)");
-    if (extension == "KHR_draco_mesh_compression")
-      throw Error(path_, "", "its meshes are compressed by Draco, which is not supported",
-                  "export the scan without compression (KHR_draco_mesh_compression)");
-    if (!is_harmless(extension))
+    if (!is_known(extension))
       throw Error(
           path_, "",
           "it requires the extension '" + printable(extension) + "', which is not supported",
@@ -189,8 +188,13 @@ std::string_view GltfFile::buffer(std::int64_t index) {
   return bytes.substr(0, static_cast<std::size_t>(length));
 }
 
-void GltfFile::locate(const GltfObject& owner, Elements& elements) {
-  const GltfObject view = root().item("bufferViews", owner.integer("bufferView"));
+bool GltfFile::has_elements(std::int64_t accessor) const {
+  const GltfObject object = root().item("accessors", accessor);
+  return object.has("bufferView") || object.has("sparse");
+}
+
+std::string_view GltfFile::view_bytes(std::int64_t index) {
+  const GltfObject view = root().item("bufferViews", index);
   if (view.has("extensions") && view.object("extensions").has(kMeshopt))
     view.fail("it is compressed by meshopt, which is not supported",
               "export the scan without compression (EXT_meshopt_compression)");
@@ -199,6 +203,14 @@ void GltfFile::locate(const GltfObject& owner, Elements& elements) {
   const std::int64_t length = view.integer("byteLength");
   if (view_offset > std::ssize(bytes) || length > std::ssize(bytes) - view_offset)
     view.fail("it reaches beyond the end of its buffer", kExportAgain);
+  return bytes.substr(static_cast<std::size_t>(view_offset), static_cast<std::size_t>(length));
+}
+
+void GltfFile::locate(const GltfObject& owner, Elements& elements) {
+  const std::int64_t index = owner.integer("bufferView");
+  const GltfObject view = root().item("bufferViews", index);
+  const std::string_view bytes = view_bytes(index);
+  const std::int64_t length = std::ssize(bytes);
   const std::int64_t element_bytes = component_bytes(elements.type) * elements.components;
   elements.stride = view.integer("byteStride", element_bytes);
   if (elements.stride < element_bytes)
@@ -209,7 +221,7 @@ void GltfFile::locate(const GltfObject& owner, Elements& elements) {
     owner.fail("its " + std::to_string(elements.count) +
                    " elements reach beyond the end of their bufferView",
                kExportAgain);
-  if (elements.count > 0) elements.data = bytes.data() + view_offset + offset;
+  if (elements.count > 0) elements.data = bytes.data() + offset;
 }
 
 std::int64_t GltfFile::component_bytes(Type type) {

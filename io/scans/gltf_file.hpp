@@ -34,6 +34,10 @@ class GltfFile {
   std::vector<double> positions(std::int64_t accessor);
   /// Returns the numbers of an accessor of indices.
   std::vector<std::uint32_t> indices(std::int64_t accessor);
+  /// Returns the bytes of a bufferView. They are valid as long as the file.
+  std::string_view view_bytes(std::int64_t view);
+  /// Returns whether an accessor has elements of its own.
+  bool has_elements(std::int64_t accessor) const;
   /// Returns the largest number that an accessor of indices could hold.
   std::uint32_t largest_index(std::int64_t accessor) const;
 

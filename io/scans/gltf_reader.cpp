@@ -2,11 +2,14 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "io/files/error.hpp"
+#include "io/scans/draco_mesh.hpp"
 #include "io/scans/gltf_file.hpp"
 #include "io/scans/scan_builder.hpp"
 #include "io/scans/scan_formats.hpp"
@@ -16,6 +19,7 @@ namespace semigeo::io {
 namespace {
 
 constexpr const char* kExportAgain = "export the scan again";
+constexpr const char* kDraco = "KHR_draco_mesh_compression";
 
 /// The numbers of a primitive's mode.
 enum Mode : std::int64_t {
@@ -128,6 +132,7 @@ class GltfScene {
     const GltfObject attributes = primitive.object("attributes");
     if (!attributes.has("POSITION")) return;  // the format allows it, and nothing can be shown
     const std::int64_t accessor = attributes.integer("POSITION");
+    if (is_packed(primitive, accessor)) return read_packed(primitive, to_scene);
     const Points points = add_points(accessor, to_scene, attributes);
     Corners corners{.first = points.first, .count = points.count};
     if (primitive.has("indices")) {
@@ -162,6 +167,35 @@ class GltfScene {
     }
   };
 
+  /// Returns whether a primitive is compressed by Draco and not there in another form.
+  bool is_packed(const GltfObject& primitive, std::int64_t accessor) const {
+    return primitive.has("extensions") && primitive.object("extensions").has(kDraco) &&
+           !file_.has_elements(accessor);
+  }
+
+  /// Reads a primitive that is compressed by Draco. It has triangles, whatever its mode.
+  void read_packed(const GltfObject& primitive, const Eigen::Affine3d& to_scene) {
+    const GltfObject packed = primitive.object("extensions").object(kDraco);
+    const GltfObject ids = packed.object("attributes");
+    std::optional<std::int64_t> normal_id;
+    if (ids.has("NORMAL")) normal_id = ids.integer("NORMAL");
+    Corners corners;
+    try {
+      DracoMesh mesh = decode_draco(file_.view_bytes(packed.integer("bufferView")),
+                                    ids.integer("POSITION"), normal_id);
+      corners.count = std::ssize(mesh.indices);
+      corners.indices = std::move(mesh.indices);
+      const Points points = append_points(mesh.positions, to_scene);
+      corners.first = points.first;
+      append_normals(mesh.normals, points, to_scene.linear());
+    } catch (const Error&) {
+      throw;
+    } catch (const std::runtime_error& error) {
+      packed.fail(std::string("its Draco data is damaged: ") + error.what(), kExportAgain);
+    }
+    add_triangles(corners);
+  }
+
   /// Returns the index with which a new strip or fan begins, or -1. glTF has no such index, but
   /// writers use what graphics cards take for it: the largest number of the type.
   std::int64_t restart_of(const GltfObject& primitive, std::int64_t indices,
@@ -178,27 +212,35 @@ class GltfScene {
                     const GltfObject& attributes) {
     const auto known = first_points_.find(accessor);
     if (known != first_points_.end()) return known->second;
-    const std::vector<double> xyz = file_.positions(accessor);
+    const Points points = append_points(file_.positions(accessor), to_scene);
+    if (attributes.has("NORMAL")) add_normals(attributes, points, to_scene.linear());
+    return first_points_[accessor] = points;
+  }
+
+  Points append_points(const std::vector<double>& xyz, const Eigen::Affine3d& to_scene) {
     const Points points{builder_.point_count(), std::ssize(xyz) / 3};
     for (std::size_t i = 0; i < xyz.size(); i += 3) {
       const Eigen::Vector3d p = to_scene * Eigen::Vector3d(&xyz[i]);
       builder_.add_point(p.x(), p.y(), p.z(), {Place::Unit::kVertex, builder_.point_count()});
     }
-    if (attributes.has("NORMAL")) add_normals(attributes, points, to_scene.linear());
-    return first_points_[accessor] = points;
+    return points;
   }
 
-  /// Adds the normals of vertices that were just added. Normals only help: damaged ones count as
-  /// none.
-  void add_normals(const GltfObject& attributes, const Points& points,
-                   const Eigen::Matrix3d& to_scene) try {
-    const std::vector<double> normals = file_.positions(attributes.integer("NORMAL"));
+  void append_normals(const std::vector<double>& normals, const Points& points,
+                      const Eigen::Matrix3d& to_scene) {
     if (to_scene.determinant() == 0) return;
     const Eigen::Matrix3d turn = to_scene.inverse().transpose();
     for (std::int64_t i = 0; i < std::min(points.count, std::ssize(normals) / 3); ++i) {
       const Eigen::Vector3d normal = turn * Eigen::Vector3d(&normals[3 * i]);
       builder_.add_normal(points.first + i, normal.normalized().cast<float>());
     }
+  }
+
+  /// Adds the normals of vertices that were just added. Normals only help: damaged ones count as
+  /// none.
+  void add_normals(const GltfObject& attributes, const Points& points,
+                   const Eigen::Matrix3d& to_scene) try {
+    append_normals(file_.positions(attributes.integer("NORMAL")), points, to_scene);
   } catch (const Error&) {
   }
 
@@ -209,8 +251,7 @@ class GltfScene {
     std::int64_t i = 0;
     switch (static_cast<Mode>(mode)) {
       case kTriangles:
-        for (; i + 2 < count; i += 3) add(corners[i], corners[i + 1], corners[i + 2]);
-        if (i < count) add_part(corners[i]);  // corners that make no triangle
+        add_triangles(corners);
         break;
       case kTriangleStrip:
         add_strips(corners);
@@ -229,6 +270,12 @@ class GltfScene {
         for (; i + (mode == kLineStrip ? 1 : 0) < count; ++i) add_part(corners[i]);
         break;
     }
+  }
+
+  void add_triangles(const Corners& corners) {
+    std::int64_t i = 0;
+    for (; i + 2 < corners.count; i += 3) add(corners[i], corners[i + 1], corners[i + 2]);
+    if (i < corners.count) add_part(corners[i]);  // corners that make no triangle
   }
 
   void add_strips(const Corners& corners) {

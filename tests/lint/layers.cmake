@@ -41,7 +41,7 @@ set(exceptions "io:engine/descriptor.hpp")
 # Libraries, each with the one folder or layer that may include its headers.
 set(libraries "tbb/:engine" "nanoflann:kernels" "hdf5.h:io/hdf5" "zlib.h:io" "archive.h:io/files"
   "archive_entry.h:io/files" "libdeflate.h:io"
-  "xxhash.h:io" "pugixml:io" "png.h:io/files" "ft2build.h:jobs/picture" "CLI/:jobs/cli")
+  "xxhash.h:io" "pugixml:io" "draco/:io" "png.h:io/files" "ft2build.h:jobs/picture" "CLI/:jobs/cli")
 # Tests and benchmarks only: they make meshes that are none of ours.
 list(APPEND libraries "OpenMesh/:none")
 

@@ -1,5 +1,9 @@
 #include "tests/io/scans/gltf_files.hpp"
 
+#include <draco/compression/encode.h>
+#include <draco/mesh/triangle_soup_mesh_builder.h>
+#include <Eigen/Geometry>
+
 namespace semigeo::io {
 namespace {
 
@@ -317,6 +321,93 @@ TEST_F(GltfReader, RefusesOtherTypes) {
                {"'nodes' is not an array"});
 }
 
+/// Returns a pyramid over a square, with normals, compressed by Draco.
+std::string draco_pyramid(int method) {
+  const std::vector<std::array<float, 3>> points = {
+      {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 2}};
+  const Triangles triangles = {{0, 2, 1}, {0, 3, 2}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+  draco::TriangleSoupMeshBuilder builder;
+  builder.Start(static_cast<int>(triangles.size()));
+  const int position =
+      builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+  const int normal = builder.AddAttribute(draco::GeometryAttribute::NORMAL, 3, draco::DT_FLOAT32);
+  const std::array<float, 3> up = {0, 0, 1};
+  for (std::size_t f = 0; f < triangles.size(); ++f) {
+    const draco::FaceIndex face(static_cast<std::uint32_t>(f));
+    const auto& [a, b, c] = triangles[f];
+    builder.SetAttributeValuesForFace(position, face, &points[a], &points[b], &points[c]);
+    builder.SetAttributeValuesForFace(normal, face, &up, &up, &up);
+  }
+  const std::unique_ptr<draco::Mesh> mesh = builder.Finalize();
+  draco::Encoder encoder;
+  encoder.SetEncodingMethod(method);
+  encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, 14);
+  draco::EncoderBuffer buffer;
+  EXPECT_TRUE(encoder.EncodeMeshToBuffer(*mesh, &buffer).ok());
+  return {buffer.data(), buffer.size()};
+}
+
+/// Returns a file of a primitive that is compressed by Draco.
+std::string draco_glb(const std::string& bytes, const std::string& ids) {
+  GltfParts parts;
+  parts.more = R"("extensionsRequired":["KHR_draco_mesh_compression"],)";
+  parts.nodes = R"({"mesh":0,"scale":[1,1,-1]})";
+  const int view = parts.add_view(bytes);
+  const int positions = parts.add_accessor(5126, 18, "VEC3", "");
+  parts.add_primitive(positions, parts.add_accessor(5125, 18, "SCALAR", ""), -1,
+                      R"(,"extensions":{"KHR_draco_mesh_compression":{"bufferView":)" +
+                          std::to_string(view) + R"(,"attributes":)" + ids + "}}");
+  return parts.glb();
+}
+
+double volume_of(const Scan& scan) {
+  double volume = 0;
+  for (const auto& [a, b, c] : scan.mesh.triangles)
+    volume += point(scan, a).dot(point(scan, b).cross(point(scan, c))) / 6;
+  return volume;
+}
+
+TEST_F(GltfReader, ReadsDraco) {
+  for (const int method : {draco::MESH_SEQUENTIAL_ENCODING, draco::MESH_EDGEBREAKER_ENCODING}) {
+    const Scan scan =
+        read("a.glb", draco_glb(draco_pyramid(method), R"({"POSITION":0,"NORMAL":1})"));
+    EXPECT_EQ(scan.mesh.triangles.size(), 6u);
+    EXPECT_NEAR(volume_of(scan), 8.0 / 3, 1e-3) << "mirrored, and facing outwards";
+    ASSERT_EQ(scan.mesh.normals.size(), scan.mesh.points.size());
+    EXPECT_LT((scan.mesh.normals[0] + Eigen::Vector3f::UnitZ()).norm(), .02);
+  }
+}
+
+TEST_F(GltfReader, WhatIsThereWithoutDracoIsReadWithoutIt) {
+  GltfParts parts;
+  const int positions = parts.add_numbers(5126, "VEC3", kSquare);
+  parts.add_primitive(positions, -1, 6,
+                      R"(,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0}})");
+  EXPECT_EQ(read("a.glb", parts.glb()).mesh.triangles.size(), 2u);
+}
+
+TEST_F(GltfReader, DamagedDracoIsAnError) {
+  const std::string ids = R"({"POSITION":0})";
+  const std::string whole = draco_pyramid(draco::MESH_EDGEBREAKER_ENCODING);
+  expect_parts(error("a.glb", draco_glb("DRACO", ids)),
+               {"meshes[0].primitives[0].extensions.KHR_draco", "Draco data is damaged"});
+  expect_parts(error("a.glb", draco_glb(whole, R"({"POSITION":7})")), {"it has no positions"});
+  for (const int method : {draco::MESH_SEQUENTIAL_ENCODING, draco::MESH_EDGEBREAKER_ENCODING}) {
+    const std::string bytes = draco_pyramid(method);
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      for (const int change : {1, 0xff}) {
+        std::string damaged = bytes;
+        damaged[i] = static_cast<char>(damaged[i] ^ change);
+        try {
+          read("a.glb", draco_glb(damaged, ids));
+        } catch (const Error&) {
+        }
+      }
+      expect_parts(error("b.glb", draco_glb(bytes.substr(0, i), ids)), {"b.glb"});
+    }
+  }
+}
+
 TEST_F(GltfReader, ReadsBuffersInFilesBesideIt) {
   const GltfParts parts = square_parts();
   std::filesystem::create_directories(folder_ / "part");
@@ -361,7 +452,6 @@ TEST_F(GltfReader, RefusesExtensionsThatItLacks) {
   };
   expect_parts(message("EXT_meshopt_compression"),
                {"compressed by meshopt", "without compression"});
-  expect_parts(message("KHR_draco_mesh_compression"), {"compressed by Draco"});
   expect_parts(message("EXT_x"), {"requires the extension 'EXT_x'"});
   expect_parts(error("a.gltf", changed(R"("byteLength":48)",
                                        R"("extensions":{"EXT_meshopt_compression":{}},
