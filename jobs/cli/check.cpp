@@ -50,8 +50,9 @@ void add_check(CLI::App& app, int& exit_code) {
       "  semigeo check archive                    every dataset of an archive\n"
       "  semigeo check archive/scans/x.ply.vtkhdf\n"
       "\n"
-      "Reads every array and compares checksums, the content digest and the rules of VTKHDF. Exit\n"
-      "code 1 if anything is broken; `semigeo run ... --verify` makes that again.\n");
+      "Reads every array and compares checksums, the content digest and the rules of VTKHDF. Bytes\n"
+      "that HDF5 keeps unused are not seen: they change no result. Exit code 1 if anything is\n"
+      "broken; `semigeo run ... --verify` makes that again.\n");
   command->add_option("target", options->target, "A dataset, or an archive")->required();
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options, &exit_code] { exit_code = check(*options); });
