@@ -31,7 +31,7 @@ std::vector<std::int64_t> histogram(const std::vector<float>& values,
   std::vector<std::int64_t> counts(kBins);
   for (std::size_t v = 0; v < values.size(); ++v) {
     if (completeness[v] <= 0 || !std::isfinite(values[v])) continue;
-    const float place = limit > 0 ? (values[v] / limit + 1) / 2 * kBins : kBins / 2;
+    const float place = limit > 0 ? (values[v] / limit + 1) / 2 * kBins : kBins / 2.0f;
     ++counts[static_cast<std::size_t>(std::clamp(place, 0.0f, kBins - 1.0f))];
   }
   return counts;
@@ -73,6 +73,7 @@ void add_features(nlohmann::json& json, kernels::FeaturesByKind features, const 
     std::ranges::stable_sort(all, std::ranges::greater(), &kernels::Feature::prominence);
     all.resize(std::min(count, most));
     std::vector<Vector3f> points;
+    points.reserve(all.size());
     for (const kernels::Feature& feature : all) points.push_back(feature.position);
     json["features"][kernels::kFeatureKindNames[kind]] = {
         {"count", count}, {"points", io::base64_of(fractions(points, box))}};
@@ -147,6 +148,7 @@ nlohmann::json scan_report(const io::Dataset& dataset, const ScanPageLimits& lim
   nlohmann::json levels = nlohmann::json::array();
   for (const int level : chosen) levels.push_back(level_json(dataset, level, vertices));
   std::vector<double> scales;
+  scales.reserve(static_cast<std::size_t>(dataset.level_count()));
   for (int level = 0; level < dataset.level_count(); ++level)
     scales.push_back(dataset.scale(level));
   return {{"title", header.input_name},
