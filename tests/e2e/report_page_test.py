@@ -33,6 +33,9 @@ class NoReportTest(SemigeoTest):
         process = self.semigeo("report", self.folder, code=2)
         self.assertIn("this program has no report: ", process.stderr)
         self.assertIn("install node and npm", process.stderr)
+        run = self.semigeo("run", self.scans, "--output", self.archive, "--report", code=2)
+        self.assertEqual(run.stderr, process.stderr)
+        self.assertFalse(self.archive.exists())
 
 
 def page_data(path):
