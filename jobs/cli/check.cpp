@@ -50,7 +50,8 @@ void add_check(CLI::App& app, int& exit_code) {
       "  semigeo check archive                    every dataset of an archive\n"
       "  semigeo check archive/scans/x.ply.vtkhdf\n"
       "\n"
-      "Reads every array and compares checksums, the content digest and the rules of VTKHDF. Bytes\n"
+      "Reads every array and compares checksums, the content digest and the rules of VTKHDF. "
+      "Bytes\n"
       "that HDF5 keeps unused are not seen: they change no result. Exit code 1 if anything is\n"
       "broken; `semigeo run ... --verify` makes that again.\n");
   command->add_option("target", options->target, "A dataset, or an archive")->required();
