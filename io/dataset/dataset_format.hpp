@@ -30,6 +30,8 @@ struct LevelAttributes {
   std::int64_t parts = 0;  ///< Number of connected parts.
   /// No side and no height of a triangle is shorter; 0 if the level was not remeshed.
   double shortest_side = 0;
+  /// Coordinates of points are multiples of it; 0 if they were not rounded.
+  double point_quantum = 0;
   kernels::RemeshCounts remeshed = {};  ///< What remeshing did to the level before.
 };
 

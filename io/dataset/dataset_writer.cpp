@@ -88,6 +88,8 @@ void DatasetWriter::write_level(const LevelAttributes& attributes, const Encoded
   file_.write_attribute(level, "mean_edge_length", attributes.mean_edge_length);
   file_.write_attribute(level, "parts", attributes.parts);
   file_.write_attribute(level, "shortest_side", attributes.shortest_side);
+  if (attributes.point_quantum > 0)
+    file_.write_attribute(level, "point_quantum", attributes.point_quantum);
   for (const LevelCount& count : kLevelCounts)
     file_.write_attribute(level, count.name, attributes.remeshed.*count.count);
 

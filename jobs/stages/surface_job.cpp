@@ -139,7 +139,8 @@ void count_missing(const LevelFields& fields, const kernels::LevelMesh& mesh,
 
 /// The totals over all levels.
 struct LevelTotals {
-  ScanQuality quality;  ///< What level 0 tells of it.
+  double first_step = 0;  ///< Step of level 0.
+  ScanQuality quality;    ///< What level 0 tells of it.
   kernels::RemeshCounts remeshed;
   std::vector<std::int64_t> feature_counts;  ///< Number of features of each level.
 };
@@ -174,7 +175,10 @@ LevelTotals write_levels(EvolvingSurface& surface, const SurfaceParameters& para
         "pass " + name, after,
         [&surface, &parameters, &context, &level, &totals, k] {
           level.fields = std::make_unique<LevelFields>(surface.evaluate());
-          if (k == 0) count_missing(*level.fields, surface.mesh(), totals.quality);
+          if (k == 0) {
+            totals.first_step = level.fields->step;
+            count_missing(*level.fields, surface.mesh(), totals.quality);
+          }
           level.features = find_features(surface, *level.fields, parameters.features, context);
         },
         cost);
@@ -183,13 +187,17 @@ LevelTotals write_levels(EvolvingSurface& surface, const SurfaceParameters& para
           "move " + name, {pass}, [&surface] { surface.move(); }, cost / 4));
     const auto encode = graph.add(
         "encode " + name, {pass},
-        [&context, &parameters, &level, k] {
-          const LevelFields& fields = *level.fields;
+        [&context, &parameters, &level, &totals, k] {
+          LevelFields& fields = *level.fields;
+          if (parameters.precision == Precision::kScan)
+            round_to_scan(fields, level.features, totals.first_step, k == 0, context.workers);
           ParallelEncoder encoder(context.workers, parameters.compression);
           if (fields.connectivity)
             level.connectivity = encode_connectivity(*fields.connectivity, encoder);
           level.encoded = encode_fields(fields, level.features, encoder);
           level.attributes = attributes_of(fields, k);
+          if (parameters.precision == Precision::kScan && k > 0)
+            level.attributes.point_quantum = position_quantum(fields.step);
           level.fields.reset();
           level.features = {};
         },

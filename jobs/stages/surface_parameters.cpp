@@ -155,6 +155,15 @@ Table storage_rows() {
        .help = "Of the stored arrays",
        .value = choice(field<&Surface::compression>(),
                        {{"deflate", Compression::kDeflate}, {"none", Compression::kNone}})},
+      // JSON does not have the default, so that keys are what they would be without the row.
+      {.key = "precision",
+       .name = "precision",
+       .help = "full: numbers as they were computed; scan: what is finer than a scan is rounded\n"
+               "away (a thousandth of the step, 0.001 in normals, 0.0001 of a curvature), and the\n"
+               "dataset is smaller",
+       .value = choice(field<&Surface::precision>(),
+                       {{"full", Precision::kFull}, {"scan", Precision::kScan}}),
+       .default_in_json = false},
       {.key = "length_unit",
        .name = "unit",
        .help = "Length unit of the scans, as a label",

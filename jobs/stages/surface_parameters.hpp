@@ -9,6 +9,7 @@
 #include "jobs/stages/level_features.hpp"
 #include "jobs/stages/parameter.hpp"
 #include "jobs/stages/prepare_surface.hpp"
+#include "jobs/stages/stored_precision.hpp"
 #include "kernels/repair/range_grid.hpp"
 #include "kernels/repair/surface_builder.hpp"
 
@@ -25,6 +26,7 @@ struct SurfaceParameters {
   /// The level for recognition. If there is none, it is the level of least slope (thesis 5.8).
   std::optional<int> recognition_level = {};
   io::Compression compression = io::Compression::kDeflate;
+  Precision precision = Precision::kFull;
   std::string length_unit = "unknown";  ///< Label of the scan's length unit, as UTF-8.
 };
 

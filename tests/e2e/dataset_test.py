@@ -7,10 +7,58 @@ import xml.etree.ElementTree as ElementTree
 import h5py
 import numpy as np
 
-from support import SemigeoTest, icosphere, joined, plane, write_ply
+from support import SemigeoTest, boulder, icosphere, joined, plane, write_ply
 
 LEVELS = 3
 RADIUS = 10.0
+
+
+class PrecisionTest(SemigeoTest):
+    def test_scan_rounds_away_what_is_finer_than_a_scan(self):
+        points, triangles = boulder(4, 1)
+        write_ply(self.scans / "b.ply", (points, triangles))
+        paths = {}
+        for precision in ("full", "scan"):
+            archive = self.folder / precision
+            self.run_scans("--levels", LEVELS, "--precision", precision, "--principal", archive=archive)
+            self.semigeo("check", archive)
+            paths[precision] = self.dataset("b.ply", archive)
+        self.assertLess(paths["scan"].stat().st_size, 0.8 * paths["full"].stat().st_size)
+        with h5py.File(paths["full"]) as full, h5py.File(paths["scan"]) as scan:
+            self.assertNotIn("precision", json.loads(full.attrs["parameters"]))
+            self.assertEqual(json.loads(scan.attrs["parameters"])["precision"], "scan")
+            for name, exact in full["levels"].items():
+                self.check_level(exact, scan["levels"][name], first=name == "000")
+            np.testing.assert_array_equal(full["selection/feature_counts"], scan["selection/feature_counts"])
+
+    def check_level(self, exact, level, first):
+        step = exact.attrs["step"]
+        for name in ("triangles", "part", "source_vertex", "contours"):
+            np.testing.assert_array_equal(level[name], exact[name])
+        if first:
+            np.testing.assert_array_equal(level["points"], exact["points"])
+            self.assertNotIn("point_quantum", level.attrs)
+        else:
+            quantum = level.attrs["point_quantum"]
+            self.assertEqual(np.abs(level["points"][...] / quantum % 1).max(), 0)
+            self.assertLessEqual(quantum, 2e-3 * step)
+            self.assertLessEqual(np.abs(level["points"][...] - exact["points"]).max(), 1e-3 * step)
+        for name in ("normals", "principal_direction_1", "principal_direction_2"):
+            self.assertLessEqual(np.abs(level[name][...] - exact[name]).max(), 1e-3)
+        for name in ("gaussian_curvature", "mean_curvature", "patch_completeness", "principal_curvature_1"):
+            error = np.abs(level[name][...] - exact[name])
+            self.assertTrue((error <= 2.0 ** -14 * np.abs(exact[name])).all())
+        ours, theirs = level["features"][...], exact["features"][...]
+        for member in ("vertex", "kind", "contour_point"):
+            np.testing.assert_array_equal(ours[member], theirs[member])
+        for member, most in (("position", 1e-3 * step), ("initial_position", 1e-3 * step), ("normal", 1e-3)):
+            self.assertLessEqual(np.abs(ours[member] - theirs[member]).max(), most)
+        error = np.abs(ours["value"] - theirs["value"])
+        self.assertTrue((error <= 2.0 ** -14 * np.abs(theirs["value"])).all())
+
+    def test_a_word_that_is_no_precision_is_refused(self):
+        write_ply(self.scans / "a.ply", icosphere(1))
+        self.semigeo("run", self.scans, "--output", self.archive, "--precision", "half", code=2)
 
 
 class SphereDatasetTest(SemigeoTest):
