@@ -1,10 +1,13 @@
 #include "bench/recognition/bench_model.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <random>
 #include <stdexcept>
 #include <utility>
 
+#include "bench/support/chance.hpp"
 #include "bench/support/mesh_changes.hpp"
 #include "bench/support/quadric_decimation.hpp"
 #include "io/files/error.hpp"
@@ -56,6 +59,12 @@ std::string stem_of(fs::path path) {
 
 }  // namespace
 
+double size_in_heaps(const std::string& name) {
+  constexpr double kSpread = 1.3;
+  bench::Random random = bench::random(0, 0, name);
+  return std::pow(kSpread, std::uniform_real_distribution(-1.0, 1.0)(random));
+}
+
 kernels::TriangleMesh repaired(kernels::TriangleMesh mesh, std::int64_t most_vertices) {
   return decimated(file_mesh(kernels::build_surface(std::move(mesh))), most_vertices);
 }
@@ -88,6 +97,10 @@ BenchModels read_models(const ModelChoice& choice, std::vector<SkippedModel>& sk
       }
       std::string name = stem_of(path);
       if (const int again = stems[name]++; again > 0) name += "_" + std::to_string(again + 1);
+      if (choice.as_in_heaps) {
+        const double size = kernels::bounding_box(mesh.points).diagonal().norm();
+        bench::move(mesh, {.scale = size_in_heaps(name) / size});
+      }
       auto model = make_model(std::move(name), std::move(mesh), choice.most_vertices);
       if (model)
         models.push_back(std::move(model));

@@ -39,11 +39,16 @@ std::unique_ptr<BenchModel> make_model(std::string name, kernels::TriangleMesh m
 /// Throws as `make_model` does.
 kernels::TriangleMesh repaired(kernels::TriangleMesh mesh, std::int64_t most_vertices);
 
+/// Returns the diagonal that a model of this name has in all heaps (heap.hpp): 1, or up to 30 %
+/// more or less, so that the sizes of different objects fit together.
+double size_in_heaps(const std::string& name);
+
 /// Says which models are read.
 struct ModelChoice {
   std::vector<std::filesystem::path> places;  ///< Files, and folders that are searched for scans.
   std::int64_t most_vertices = 5000;          ///< Largest number of vertices of a model.
   std::int64_t most_models = 0;               ///< Largest number of models; 0: all.
+  bool as_in_heaps = false;                   ///< Models get the size that they have in heaps.
 };
 
 /// Names a file that is no model.

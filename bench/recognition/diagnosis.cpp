@@ -78,11 +78,13 @@ Diagnosis Diagnoser::diagnosis(std::int64_t index, const Similarity& truth) cons
   const auto all =
       jobs::weightiest_matches(matches_, index, std::numeric_limits<std::size_t>::max());
   for (const jobs::TripletMatch& match : all)
-    result.matches += agree(model, jobs::pose_of(match, model, scene_), pose) ? 1 : 0;
+    result.matches += agree(model, jobs::pose_of(match, model, scene_.features), pose) ? 1 : 0;
   listed.votes = jobs::votes_of_triplets(
-      jobs::weightiest_matches(matches_, index, tuning.shortlist.most_matches), model, scene_);
+      jobs::weightiest_matches(matches_, index, tuning.shortlist.most_matches), model,
+      scene_.features);
   result.votes = listed.votes.support(pose, {});
-  for (const kernels::PoseCluster& cluster : listed.votes.clusters())
+  for (const kernels::PoseCluster& cluster :
+       listed.votes.clusters({.seeds = tuning.clusters.seeds_of_view}))
     if (agree(model, cluster.pose, pose)) result.cluster = std::max(result.cluster, cluster.weight);
   listed.tree.emplace(model.samples);
   jobs::ExaminedPose examined;

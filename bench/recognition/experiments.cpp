@@ -58,6 +58,19 @@ class Experiments {
 
   void range_scan(const Scene& scene) { look(scene, Opened(libraries_, {}, method_)); }
 
+  /// Heaps whose objects no library has.
+  void absent_heaps() {
+    for (std::uint64_t s = 0; s < options_.seeds; ++s)
+      for (int number = 0; number < options_.heaps; ++number) {
+        Scene scene = make_heap_scene(known(), number, options_.first_seed + s);
+        std::vector<std::size_t> left_out = beyond_known();
+        for (const PlacedObject& object : scene.objects) left_out.push_back(object.model);
+        scene.kind = kAbsent + scene.kind;
+        scene.objects.clear();
+        look(scene, Opened(libraries_, left_out, method_));
+      }
+  }
+
   void heaps() {
     const Opened opened(libraries_, beyond_known(), method_);
     for (std::uint64_t s = 0; s < options_.seeds; ++s)
@@ -148,6 +161,7 @@ std::vector<Outcome> run_experiments(BenchModels& models, const Method& method,
   experiments.generated(options.kinds);
   if (scan) experiments.range_scan(scan->scene);
   if (wanted(kHeap)) experiments.heaps();
+  if (wanted(kAbsentHeaps)) experiments.absent_heaps();
   if (wanted(kFalsePositives)) experiments.false_positives();
   return experiments.take();
 }

@@ -17,13 +17,14 @@ namespace semigeo::recognition {
 // These kinds of experiments are not among scene_kinds().
 inline constexpr char kRangeScan[] = "G";       ///< The real scene of range_scan.hpp.
 inline constexpr char kFalsePositives[] = "X";  ///< Scenes A to E, whose object no library has.
+inline constexpr char kAbsentHeaps[] = "XR";    ///< Scenes of kind R, whose objects no library has.
 
 /// Says which experiments are made, and how.
 struct ExperimentOptions {
   std::vector<std::string> kinds;      ///< Names of the kinds of scenes.
   std::uint64_t first_seed = 1;        ///< Seed of the first scene of each kind and object.
   std::uint64_t seeds = 1;             ///< Number of scenes of each kind and object.
-  int heaps = 20;                      ///< Number of scenes of kind R of each seed.
+  int heaps = 20;                      ///< Number of scenes of kinds R and XR of each seed.
   bool diagnose = true;                ///< Whether it is examined where objects of heaps are lost.
   std::int64_t model_vertices = 5000;  ///< Number of vertices of the model of kind G.
   std::int64_t scan_vertices = 20000;  ///< Number of vertices of the scene of kind G.

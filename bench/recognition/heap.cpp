@@ -15,8 +15,6 @@ namespace {
 using Eigen::Vector3d;
 using kernels::TriangleMesh;
 
-/// The largest factor by which sizes in heaps differ from 1.
-constexpr double kSizeSpread = 1.3;
 /// The largest distance of an object's centre from the middle.
 constexpr double kScatter = 0.55;
 /// Half the width of the grid of heights. Objects stay within it.
@@ -76,11 +74,6 @@ Vector3d place_near_middle(bench::Random& random) {
 
 }  // namespace
 
-double size_in_heaps(const BenchModel& model) {
-  bench::Random random = bench::random(0, 0, model.name);
-  return std::pow(kSizeSpread, std::uniform_real_distribution(-1.0, 1.0)(random));
-}
-
 std::vector<PlacedObject> drop_heap(ModelSpan models, std::span<const std::size_t> objects,
                                     bench::Random& random) {
   Heights heap(static_cast<std::size_t>(kSide) * kSide, 0.0);
@@ -88,7 +81,7 @@ std::vector<PlacedObject> drop_heap(ModelSpan models, std::span<const std::size_
   for (const std::size_t index : objects) {
     const BenchModel& model = *models[index];
     PlacedObject object{.model = index, .pose = {}};
-    object.pose.scale = size_in_heaps(model) / model.diagonal;
+    object.pose.scale = size_in_heaps(model.name) / model.diagonal;
     object.pose.rotation = bench::random_rotation(random);
     object.pose.translation =
         place_near_middle(random) - object.pose.scale * (object.pose.rotation * model.centre);

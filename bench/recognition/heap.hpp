@@ -10,10 +10,6 @@
 
 namespace semigeo::recognition {
 
-/// Returns the diagonal that a model has in all heaps: 1, by up to a third more or less. It follows
-/// from the model's name, so that the sizes of different objects fit together in every heap.
-double size_in_heaps(const BenchModel& model);
-
 /// Drops models onto a floor at z = 0 and onto one another, in the order of their indices: each is
 /// turned at random, put at a random place near the middle, and lowered until it meets the floor or
 /// what lies there. No two objects cross. Surfaces are compared on a grid of heights whose cells

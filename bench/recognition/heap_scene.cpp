@@ -107,7 +107,6 @@ Scene make_heap_scene(ModelSpan models, int number, std::uint64_t seed) {
           {.noise = scene.noise, .quantum = kQuantum, .mixed = scene.mixed_pixels ? kMixed : 0},
           of_errors);
   scene.mesh = triangulated(image, camera).mesh;
-  scene.eye = Vector3d::Zero();
   return scene;
 }
 

@@ -19,6 +19,7 @@
 #include "bench/support/examples_first.hpp"
 #include "io/files/atomic_file.hpp"
 #include "jobs/stages/recognise_scene.hpp"
+#include "jobs/stages/search_parameters.hpp"
 #include "jobs/stages/thesis_recognition.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -49,6 +50,7 @@ std::vector<std::string> all_kinds() {
   kinds.insert(kinds.begin() + 6, kRangeScan);
   kinds.push_back(kFalsePositives);
   kinds.push_back(kHeap);
+  kinds.push_back(kAbsentHeaps);
   return kinds;
 }
 
@@ -86,6 +88,8 @@ void tell(const Outcome& o) {
 
 int run(Options options, const std::vector<std::string>& arguments) {
   if (options.short_run) shorten(options);
+  if (options.models.as_in_heaps)
+    options.experiments.recognition.scale = jobs::scale_range("known");
   if (options.method == "thesis" || options.thesis_tables)
     options.experiments.parameters.torsion = true;
   engine::Workers workers(options.threads);
@@ -128,7 +132,7 @@ void add_options(CLI::App& app, Options& options) {
   ExperimentOptions& e = options.experiments;
   const std::vector<std::string> kinds = all_kinds();
   e.kinds = kinds;
-  std::erase(e.kinds, kHeap);
+  std::erase_if(e.kinds, [](const std::string& k) { return k == kHeap || k == kAbsentHeaps; });
   options.models.places = {SEMIGEO_REAL_SCANS};
   e.scan_folder = SEMIGEO_REAL_SCANS;
   app.add_option("--models", options.models.places, "Files and folders; closed meshes are used")
@@ -143,7 +147,10 @@ void add_options(CLI::App& app, Options& options) {
       ->check(CLI::IsMember(kinds));
   app.add_option("--seeds", e.seeds, "Scenes of each kind and object")->check(CLI::Range(1, 1000));
   app.add_option("--seed", e.first_seed, "The first");
-  app.add_option("--heaps", e.heaps, "Scenes of kind R of each seed")->check(CLI::Range(1, 1000));
+  app.add_option("--heaps", e.heaps, "Scenes of kinds R and XR of each seed")
+      ->check(CLI::Range(1, 1000));
+  app.add_flag("--known-scale", options.models.as_in_heaps,
+               "R and XR: objects have the size of their models, and others are left out");
   app.add_option("--scans", e.scan_folder, "Folder with the files of G");
   app.add_option("--scan-vertices", e.scan_vertices, "Of G's scene, at most; 0: as it is")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{100'000'000}));
@@ -184,6 +191,7 @@ std::string footer() {
       "  G    a real range scan, if its files are there\n"
       "  X    A to E, of an object that the library does not have\n"
       "  R    a heap of three to six objects, scanned from one side; only if it is asked for\n"
+      "  XR   R, of objects that the library does not have; only if it is asked for\n"
       "named: first in the ranking, or the first three for three objects; posed: with the right "
       "pose;\nreported: all among the objects found, with the right poses; false: objects found "
       "that are not\nthere, and in how many scenes. A pose is right within 5 degrees, 5 % of the "

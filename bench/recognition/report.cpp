@@ -140,6 +140,29 @@ Json diagnosis_json(const std::optional<Diagnosis>& diagnosis) {
           {"score", diagnosis->score}};
 }
 
+/// Returns what the scores of a ranking are made of.
+Json ranking_json(const std::vector<RankedModel>& ranking) {
+  Json list = Json::array();
+  for (const auto& [model, is_right, c] : ranking) {
+    const kernels::View view = c.view.value_or(kernels::View{});
+    list.push_back({{"model", model},
+                    {"right", is_right},
+                    {"score", c.score},
+                    {"match", c.match},
+                    {"conflict", c.conflict},
+                    {"closeness", c.closeness},
+                    {"stability", c.stability},
+                    {"support", c.support},
+                    {"explained", c.explained},
+                    {"view_score", c.view_score},
+                    {"there", view.there},
+                    {"behind", view.behind},
+                    {"nothing", view.nothing},
+                    {"opposed", view.opposed}});
+  }
+  return list;
+}
+
 Json outcome_json(const Outcome& o) {
   Json objects = Json::array();
   for (const ObjectOutcome& object : o.objects)
@@ -152,6 +175,8 @@ Json outcome_json(const Outcome& o) {
                        {"diagnosis", diagnosis_json(object.diagnosis)},
                        {"reported", object.reported}});
   return {{"kind", o.kind},
+          {"ranking", ranking_json(o.ranking)},
+          {"single_view", o.single_view},
           {"scene", o.scene},
           {"seed", o.seed},
           {"vertices", o.vertices},

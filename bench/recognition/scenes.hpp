@@ -1,8 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -45,9 +43,8 @@ struct Scene {
   std::uint64_t seed = 0;  ///< Seed of all its random choices.
   kernels::TriangleMesh mesh;
   std::vector<PlacedObject> objects;
-  double noise = 0;                         ///< Noise of the scanner, in pixels.
-  bool mixed_pixels = false;                ///< Pixels beside depth jumps lie between two surfaces.
-  std::optional<Eigen::Vector3d> eye = {};  ///< Place of the scanner, if there is one.
+  double noise = 0;           ///< Noise of the scanner, in pixels.
+  bool mixed_pixels = false;  ///< Pixels beside depth jumps lie between two surfaces.
 };
 
 /// Makes a scene of the model `first` (an index) and of others that are chosen at random, if the

@@ -5,6 +5,7 @@
 
 #include "engine/observer.hpp"
 #include "engine/stopwatch.hpp"
+#include "kernels/recognition/single_view.hpp"
 #include "kernels/repair/surface_builder.hpp"
 
 namespace semigeo::recognition {
@@ -74,16 +75,21 @@ Outcome judged(const Scene& scene, ModelSpan models, const std::vector<std::stri
     const jobs::Candidate& candidate = found.ranking[i];
     const std::string& name = names.at(candidate.model);
     if (i == 0) outcome.first = name;
+    RankedModel& ranked = outcome.ranking.emplace_back();
+    ranked.model = name;
+    ranked.candidate = candidate;
     bool there = false;
     for (std::size_t k = 0; k < scene.objects.size(); ++k) {
       ObjectOutcome& object = outcome.objects[k];
       if (object.model != name) continue;
       there = true;
+      const PoseError error =
+          pose_error(*models[scene.objects[k].model], candidate.pose, scene.objects[k].pose);
+      ranked.right = ranked.right || right(error);
       if (object.rank > 0) continue;
       object.rank = static_cast<int>(i) + 1;
       object.score = candidate.score;
-      object.ranked =
-          pose_error(*models[scene.objects[k].model], candidate.pose, scene.objects[k].pose);
+      object.ranked = error;
     }
     if (!there && outcome.best_wrong.empty()) {
       outcome.best_wrong = name;
@@ -114,15 +120,17 @@ Outcome try_scene(const Scene& scene, ModelSpan models, const std::vector<std::s
                   const engine::RunContext& context) {
   const kernels::BuiltSurface built = kernels::build_surface(kernels::TriangleMesh(scene.mesh));
   Seconds scale_space, search;
-  const kernels::RecognitionModel model = timed(scale_space, [&] {
+  kernels::RecognitionModel model = timed(scale_space, [&] {
     return jobs::recognition_model(built, jobs::scene_parameters(parameters), context);
   });
+  model.eye = kernels::eye_of_view(model);
   const jobs::Recognition found = timed(search, [&] { return recogniser(model); });
   Outcome outcome = judged(scene, models, names, found);
   outcome.vertices = built.surface.vertex_count();
   outcome.features = std::ssize(model.features.features);
   outcome.scale_space = scale_space;
   outcome.search = search;
+  outcome.single_view = model.eye.has_value();
   if (inspect) inspect(model, outcome);
   return outcome;
 }

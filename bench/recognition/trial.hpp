@@ -36,6 +36,13 @@ struct ObjectOutcome {
   std::optional<Diagnosis> diagnosis = {};  ///< Of an object in a heap that is not reported.
 };
 
+/// Describes a model of the ranking.
+struct RankedModel {
+  std::string model;   ///< Its name.
+  bool right = false;  ///< It is in the scene, in this pose.
+  jobs::Candidate candidate;
+};
+
 /// Tells what was recognised in a scene.
 struct Outcome {
   std::string kind;
@@ -54,8 +61,10 @@ struct Outcome {
   double false_score = 0;  ///< Score of that object.
   std::int64_t scene_triplets = 0;
   std::int64_t matches = 0;
-  Seconds scale_space;  ///< Time for the features and samples of the scene.
-  Seconds search;       ///< Time for everything after that.
+  bool single_view = false;          ///< The scene is taken to be seen from one place.
+  std::vector<RankedModel> ranking;  ///< Best first.
+  Seconds scale_space;               ///< Time for the features and samples of the scene.
+  Seconds search;                    ///< Time for everything after that.
 
   /// Returns whether the ranking begins with the objects of the scene.
   bool named() const;

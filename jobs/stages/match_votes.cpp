@@ -66,9 +66,10 @@ kernels::PairOptions scene_pair_options(const RecognitionTuning& tuning) {
 }
 
 std::vector<TripletMatch> weightiest_matches(const TripletMatches& all, std::int64_t model,
-                                             std::size_t most) {
+                                             std::size_t most, const MatchFilter& filter) {
   std::vector<TripletMatch> matches(all.matches.begin() + all.first[model],
                                     all.matches.begin() + all.first[model + 1]);
+  if (filter) std::erase_if(matches, [&](const TripletMatch& match) { return !filter(match); });
   if (matches.size() > most) {
     const auto heavier = [](const TripletMatch& a, const TripletMatch& b) {
       return std::tie(b.weight, a.triangle, a.model_corners) <
@@ -83,14 +84,24 @@ std::vector<TripletMatch> weightiest_matches(const TripletMatches& all, std::int
 }
 
 kernels::Similarity pose_of(const TripletMatch& match, const RecognitionModel& model,
-                            const RecognitionModel& scene) {
-  return kernels::similarity_between(
-      kernels::feature_triangle(model.features, match.model_corners),
-      kernels::feature_triangle(scene.features, match.scene_corners));
+                            const kernels::OrientedFeatures& scene) {
+  return kernels::similarity_between(kernels::feature_triangle(model.features, match.model_corners),
+                                     kernels::feature_triangle(scene, match.scene_corners));
+}
+
+double scale_of(const TripletMatch& match, const RecognitionModel& model,
+                const kernels::OrientedFeatures& scene) {
+  const auto perimeter = [](const kernels::OrientedTriangle& t) {
+    return (t.points[0] - t.points[1]).norm() + (t.points[1] - t.points[2]).norm() +
+           (t.points[2] - t.points[0]).norm();
+  };
+  return perimeter(kernels::feature_triangle(scene, match.scene_corners)) /
+         perimeter(kernels::feature_triangle(model.features, match.model_corners));
 }
 
 kernels::PoseVotes votes_of_triplets(const std::vector<TripletMatch>& matches,
-                                     const RecognitionModel& model, const RecognitionModel& scene) {
+                                     const RecognitionModel& model,
+                                     const kernels::OrientedFeatures& scene) {
   return votes_of(
       matches, [](const TripletMatch& match) { return match.triangle; },
       [&](const TripletMatch& match) { return pose_of(match, model, scene); }, model,
@@ -98,10 +109,16 @@ kernels::PoseVotes votes_of_triplets(const std::vector<TripletMatch>& matches,
 }
 
 kernels::PoseVotes votes_of_pairs(std::span<const kernels::FeaturePair> of_scene,
-                                  const RecognitionModel& model, std::size_t most) {
+                                  const RecognitionModel& model, std::size_t most,
+                                  const ScaleRange& scale) {
   const std::vector<kernels::FeaturePair> pairs = kernels::local_pairs(model.features, {});
+  std::vector<kernels::PairMatch> matches = kernels::match_pairs(of_scene, pairs);
+  if (!scale.is_any())
+    std::erase_if(matches, [&](const kernels::PairMatch& m) {
+      return !scale.has(kernels::similarity_between(pairs[m.model], of_scene[m.scene]).scale);
+    });
   return votes_of(
-      kernels::match_pairs(of_scene, pairs), [](const kernels::PairMatch& m) { return m.scene; },
+      matches, [](const kernels::PairMatch& m) { return m.scene; },
       [&](const kernels::PairMatch& m) {
         return kernels::similarity_between(pairs[m.model], of_scene[m.scene]);
       },

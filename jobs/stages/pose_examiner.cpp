@@ -22,23 +22,46 @@ void keep(std::vector<ExaminedPose>& poses, std::size_t by_overlap, std::size_t 
   poses.resize(std::min(poses.size(), by_overlap + by_weight));
 }
 
+/// Returns the part of a score that says how well a pose fits where it matches.
+double quality(const ExaminedPose& pose, double conflict, const ScoreWeights& weights) {
+  const kernels::Overlap& o = pose.overlap;
+  const double held = o.stability / (o.stability + weights.half_held);
+  return std::pow(held, weights.held) *
+         std::pow(o.match / (o.match + conflict), weights.unopposed) *
+         std::pow(o.closeness, weights.closeness);
+}
+
+/// Returns how much triplets speak for a pose, from 1/2 to 1.
+double wanted(const ExaminedPose& pose, const ScoreWeights& weights) {
+  return (weights.prior_support + pose.support) / (2 * weights.prior_support + pose.support);
+}
+
 }  // namespace
 
 double score_of(const ExaminedPose& pose, const ScoreWeights& weights) {
   const kernels::Overlap& o = pose.overlap;
   if (o.match <= 0) return 0;
-  const double unopposed = o.match / (o.match + o.conflict);
   const double either = o.match + pose.explained - o.match * pose.explained;
-  const double wanted =
-      (weights.prior_support + pose.support) / (2 * weights.prior_support + pose.support);
-  const double held = o.stability / (o.stability + weights.half_held);
-  return std::sqrt(o.match * either) * std::pow(held, weights.held) *
-         std::pow(unopposed, weights.unopposed) * std::pow(o.closeness, weights.closeness) *
-         std::pow(pose.explained * wanted, weights.explained);
+  return std::sqrt(o.match * either) * quality(pose, o.conflict, weights) *
+         std::pow(pose.explained * wanted(pose, weights), weights.explained);
+}
+
+double view_score_of(const ExaminedPose& pose, const ViewTuning& view) {
+  const double match = pose.overlap.match;
+  const kernels::View& seen = pose.overlap.view;
+  const double visible = seen.visible();
+  if (match <= 0 || visible <= 0) return 0;
+  const double enough = std::min(match / view.enough_match, 1.0);
+  const double explained = std::min(pose.explained / view.enough_explained, 1.0);
+  return std::min(match / visible, 1.0) * seen.there / visible * std::sqrt(enough) *
+         quality(pose, seen.opposed, view.score) *
+         std::pow(explained * wanted(pose, view.score), view.score.explained);
 }
 
 PoseExaminer::PoseExaminer(const RecognitionModel& scene, const RecognitionTuning& tuning)
-    : scene_(scene), tuning_(tuning), tree_(scene.samples) {}
+    : scene_(scene), tuning_(tuning), tree_(scene.samples) {
+  if (scene.eye) depths_.emplace(scene.samples, *scene.eye);
+}
 
 void PoseExaminer::glance(ListedModel& listed) const {
   for (ExaminedPose& pose : listed.poses)
@@ -75,6 +98,7 @@ void PoseExaminer::measure(const ListedModel& listed, ExaminedPose& pose,
   const MeasurementTuning& tuning = tuning_.measurement;
   kernels::OverlapOptions options = close_overlap(model, pose.pose);
   options.stability = true;
+  options.depths = depths_ ? &*depths_ : nullptr;
   pose.overlap = kernels::overlap(model.samples, model.diagonal, pose.pose, tree_, options,
                                   tuning.model_samples, used);
   const auto marks = kernels::samples_on_model(*listed.tree, model.diagonal, pose.pose,
@@ -82,6 +106,9 @@ void PoseExaminer::measure(const ListedModel& listed, ExaminedPose& pose,
   pose.explained = static_cast<double>(std::ranges::count(marks, 1)) /
                    static_cast<double>(std::max<std::size_t>(marks.size(), 1));
   pose.score = score_of(pose, tuning_.score);
+  if (!depths_) return;
+  pose.view_score = view_score_of(pose, tuning_.view);
+  pose.score = std::max(pose.score, tuning_.view.weight * pose.view_score);
 }
 
 std::vector<ExaminedPose> PoseExaminer::better_symmetric_poses(const ListedModel& listed,
@@ -106,6 +133,15 @@ std::vector<ExaminedPose> PoseExaminer::better_symmetric_poses(const ListedModel
   }
   std::erase_if(tried, [&](const ExaminedPose& other) { return other.score <= pose.score; });
   return tried;
+}
+
+kernels::OrientedFeatures PoseExaminer::features_off(std::span<const std::uint8_t> marked) const {
+  kernels::OrientedFeatures result = scene_.features;
+  std::erase_if(result.features, [&](const kernels::OrientedFeature& feature) {
+    const std::int64_t near = tree_.nearest(feature.position, scene_.diagonal);
+    return near >= 0 && marked[near] != 0;
+  });
+  return result;
 }
 
 /// Returns the tolerance within which the surfaces match in a pose that is right.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "jobs/stages/recognition_tuning.hpp"
+#include "kernels/recognition/depth_map.hpp"
 #include "kernels/recognition/overlap.hpp"
 #include "kernels/recognition/pose_clusters.hpp"
 #include "kernels/recognition/recognition_model.hpp"
@@ -24,7 +25,8 @@ struct ExaminedPose {
   double support = 0;             ///< Weight of the matches that agree on the refined pose.
   kernels::Overlap overlap = {};  ///< How the model lies in the scene.
   double explained = 0;           ///< Share of the scene's samples that lie on the model.
-  double score = 0;
+  double score = 0;               ///< The larger one of both scores.
+  double view_score = 0;          ///< view_score_of the pose, if the scene was seen from one place.
 };
 
 /// A model that may be in the scene.
@@ -38,6 +40,10 @@ struct ListedModel {
 
 /// Returns the score of a measured pose. The result is 0 if nothing matches.
 double score_of(const ExaminedPose& pose, const ScoreWeights& weights);
+
+/// Returns the score of a measured pose in a scene that was seen from one place. What is hidden
+/// does not count. The result is 0 if nothing matches.
+double view_score_of(const ExaminedPose& pose, const ViewTuning& view);
 
 /// Examines poses of models in one scene. Different models may be examined at the same time.
 class PoseExaminer {
@@ -59,6 +65,9 @@ class PoseExaminer {
   void measure(const ListedModel& listed, ExaminedPose& pose,
                std::span<const std::uint8_t> used) const;
 
+  /// Returns the features of the scene whose nearest sample is not marked.
+  kernels::OrientedFeatures features_off(std::span<const std::uint8_t> marked) const;
+
   /// Returns poses with a better score that a nearly symmetric model may have instead of this one.
   std::vector<ExaminedPose> better_symmetric_poses(const ListedModel& listed,
                                                    const ExaminedPose& pose) const;
@@ -74,6 +83,7 @@ class PoseExaminer {
   const kernels::RecognitionModel& scene_;
   const RecognitionTuning& tuning_;
   kernels::SampleTree tree_;
+  std::optional<kernels::DepthMap> depths_;  ///< Of a scene that was seen from one place.
 };
 
 }  // namespace semigeo::jobs

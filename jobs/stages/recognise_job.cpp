@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "jobs/stages/recognition_features.hpp"
 #include "jobs/stages/scan_surface.hpp"
 #include "jobs/stages/thesis_recognition.hpp"
+#include "kernels/recognition/single_view.hpp"
 
 namespace semigeo::jobs {
 namespace {
@@ -29,7 +31,10 @@ kernels::RecognitionModel read_scene(const RecogniseJob& job,
     scene.repairs = scan.repairs;
     scene.vertices = scan.built.surface.vertex_count();
     scene.triangles = scan.built.surface.face_count();
-    return recognition_model(scan.built, scene_parameters(parameters), context);
+    kernels::RecognitionModel model =
+        recognition_model(scan.built, scene_parameters(parameters), context);
+    if (scan.eye) model.eye = *scan.eye - model.origin;
+    return model;
   }
   const io::Dataset dataset(job.scene);
   const io::LevelInfo level = dataset.level(0);
@@ -47,7 +52,8 @@ Recognition recognise(const io::HashLibrary& library, const kernels::Recognition
                       const SearchParameters& parameters, const engine::RunContext& context) {
   // Nothing can be recognised in a scene without features.
   if (scene.features.features.empty()) return {};
-  const RecognitionOptions options = {.min_score = parameters.min_score};
+  const RecognitionOptions options = {.min_score = parameters.min_score,
+                                      .scale = scale_range(parameters.scale)};
   if (parameters.method == RecognitionMethod::kThesis)
     return thesis_recognition(library, scene, options, context);
   return recognise_scene(library, scene, options, context);
@@ -56,6 +62,19 @@ Recognition recognise(const io::HashLibrary& library, const kernels::Recognition
 /// Tells whether a scene is open. Nothing but its majority says which side of it is outside.
 bool is_open(const kernels::RecognitionModel& scene) {
   return std::ranges::find(scene.samples.rim, 1) != scene.samples.rim.end();
+}
+
+/// Finds out where a scene was scanned from, unless it is known or not wanted.
+void find_view(ViewChoice choice, kernels::RecognitionModel& scene) {
+  if (choice == ViewChoice::kNone)
+    scene.eye.reset();
+  else if (!scene.eye)
+    scene.eye = kernels::eye_of_view(scene);
+}
+
+std::optional<Eigen::Vector3d> eye_in_file(const kernels::RecognitionModel& scene) {
+  if (!scene.eye) return std::nullopt;
+  return *scene.eye + scene.origin;
 }
 
 }  // namespace
@@ -91,12 +110,18 @@ RecogniseJobResult run_recognise_job(const RecogniseJob& job, const SearchParame
       read_scene(job, parameters_of(library), parameters.depth_jump, context, scene);
   scene.features = static_cast<std::int64_t>(model.features.features.size());
   scene.samples = static_cast<std::int64_t>(model.samples.points.size());
+  find_view(parameters.view, model);
   Recognition recognition = recognise(library, model, parameters, context);
+  scene.eye = eye_in_file(model);
   if (recognition.objects.empty() && is_open(model)) {
-    Recognition turned =
-        recognise(library, kernels::turned_over(std::move(model)), parameters, context);
+    model = kernels::turned_over(std::move(model));
+    find_view(parameters.view, model);
+    Recognition turned = recognise(library, model, parameters, context);
     scene.turned = !turned.objects.empty();
-    if (scene.turned) recognition = std::move(turned);
+    if (scene.turned) {
+      recognition = std::move(turned);
+      scene.eye = eye_in_file(model);
+    }
   }
   write_recognised(job.output, job.key, scene, library, parameters, recognition);
   return {.features = scene.features,

@@ -29,21 +29,16 @@ class Recogniser {
         examiner_(scene, options.tuning) {}
 
   Recognition run() {
-    look_up();
+    look_up(scene_.features, tuning_.look_up);
+    result_.scene_triplets = matches_.scene_triplets;
+    result_.matches = static_cast<std::int64_t>(matches_.matches.size());
+    votes_ = matches_.votes;
     shortlist();
-    for_each(shortlist_.size(), [this](std::size_t i) {
-      find_poses(i);
-      examiner_.glance(shortlist_[i]);
-    });
-    choose_models();
-    for_each(shortlist_.size(),
-             [this](std::size_t i) { examiner_.look_closer(shortlist_[i], effort()); });
-    choose_poses();
-    for_each(poses_.size(),
-             [this](std::size_t i) { examiner_.verify(shortlist_[poses_[i].listed], poses_[i]); });
-    try_symmetric_poses();
-    rank();
+    most_matches_ = tuning_.shortlist.most_matches;
+    examine();
     find_objects();
+    if (scene_.eye) look_again();
+    rank();
     return std::move(result_);
   }
 
@@ -59,15 +54,52 @@ class Recogniser {
     });
   }
 
-  /// Matches triplets of the scene with the library, and makes pairs if there are few of them.
-  void look_up() {
+  /// Matches triplets of features of the scene with the library, and makes pairs if there are few
+  /// triplets.
+  void look_up(kernels::OrientedFeatures features, const LookUpTuning& tuning) {
+    features_ = std::move(features);
     const std::vector<kernels::Triplet> triplets =
-        kernels::local_triplets(scene_.features, scene_triplet_options(tuning_.look_up));
-    matches_ = match_triplets(library_, triplets, tuning_.look_up, context_);
-    result_.scene_triplets = matches_.scene_triplets;
-    result_.matches = static_cast<std::int64_t>(matches_.matches.size());
-    if (result_.scene_triplets < tuning_.pairs.few_triplets)
-      pairs_ = kernels::local_pairs(scene_.features, scene_pair_options(tuning_));
+        kernels::local_triplets(features_, scene_triplet_options(tuning));
+    matches_ = match_triplets(library_, triplets, tuning, context_);
+    pairs_.clear();
+    if (matches_.scene_triplets < tuning_.pairs.few_triplets)
+      pairs_ = kernels::local_pairs(features_, scene_pair_options(tuning_));
+  }
+
+  /// Finds poses of all listed models, and examines the best of them until they have scores.
+  void examine() {
+    for_each(shortlist_.size(), [this](std::size_t i) {
+      find_poses(i);
+      examiner_.glance(shortlist_[i]);
+    });
+    choose_models();
+    for_each(shortlist_.size(),
+             [this](std::size_t i) { examiner_.look_closer(shortlist_[i], effort()); });
+    choose_poses();
+    for_each(poses_.size(),
+             [this](std::size_t i) { examiner_.verify(shortlist_[poses_[i].listed], poses_[i]); });
+    try_symmetric_poses();
+    std::erase_if(
+        poses_, [this](const ExaminedPose& pose) { return !options_.scale.has(pose.pose.scale); });
+    std::ranges::stable_sort(poses_, std::ranges::greater(), &ExaminedPose::score);
+  }
+
+  /// Looks once more at what the objects leave of a scene that was seen from one place: with more
+  /// triangles of its features alone.
+  void look_again() {
+    const SecondLookTuning& tuning = tuning_.second_look;
+    const auto left = std::ranges::count(used_, 0);
+    if (static_cast<double>(left) < tuning.least_left * static_cast<double>(used_.size())) return;
+    LookUpTuning look = tuning_.look_up;
+    look.most_triangles = tuning.most_triangles;
+    look_up(examiner_.features_off(used_), look);
+    most_matches_ = tuning.most_matches;
+    std::vector<ExaminedPose> first = std::move(poses_);
+    poses_.clear();
+    examine();
+    poses_.insert(poses_.end(), first.begin(), first.end());
+    std::ranges::stable_sort(poses_, std::ranges::greater(), &ExaminedPose::score);
+    find_objects();
   }
 
   /// Lists models that got votes. Those come first that got the most beyond what chance gives a
@@ -94,22 +126,31 @@ class Recogniser {
   /// Finds the poses on which triplets of the listed model agree, and those on which pairs do.
   void find_poses(std::size_t index) {
     ListedModel& listed = shortlist_[index];
-    listed.record = library_.read_model(listed.model);
+    if (listed.record.samples.points.empty()) listed.record = library_.read_model(listed.model);
+    listed.poses.clear();
     const RecognitionModel& model = listed.record;
-    const ShortlistTuning& tuning = tuning_.shortlist;
     const std::size_t most =
-        std::min(tuning.most_matches, tuning.most_matches_together / shortlist_.size());
-    listed.votes =
-        votes_of_triplets(weightiest_matches(matches_, listed.model, most), model, scene_);
+        std::min(most_matches_, tuning_.shortlist.most_matches_together / shortlist_.size());
+    listed.votes = votes_of_triplets(
+        weightiest_matches(matches_, listed.model, most, match_filter(model)), model, features_);
     add_clusters(listed.votes, 1, index);
     if (pairs_.empty() || index >= tuning_.pairs.most_models) return;
-    add_clusters(votes_of_pairs(pairs_, model, tuning.most_matches), tuning_.pairs.vote_weight,
-                 index);
+    add_clusters(votes_of_pairs(pairs_, model, most_matches_, options_.scale.widened()),
+                 tuning_.pairs.vote_weight, index);
+  }
+
+  /// Returns what leaves matches out whose scale cannot be right, or nothing if any scale can.
+  MatchFilter match_filter(const RecognitionModel& model) const {
+    if (options_.scale.is_any()) return {};
+    return [&model, this](const TripletMatch& match) {
+      return options_.scale.widened().has(scale_of(match, model, features_));
+    };
   }
 
   void add_clusters(const kernels::PoseVotes& votes, double weight, std::size_t index) {
     const ClusterTuning& tuning = tuning_.clusters;
     kernels::ClusterOptions options;
+    if (scene_.eye) options.seeds = tuning.seeds_of_view;
     if (shortlist_.size() > tuning.few_models)
       options = {.seeds = tuning.seeds_of_many, .most = tuning.most_of_many};
     for (const kernels::PoseCluster& cluster : votes.clusters(options))
@@ -149,7 +190,8 @@ class Recogniser {
     std::vector<std::uint8_t> wanted(shortlist_.size());
     for (const ExaminedPose& pose : poses_) wanted[pose.listed] = 1;
     for_each(shortlist_.size(), [&](std::size_t i) {
-      if (wanted[i] != 0) shortlist_[i].tree.emplace(shortlist_[i].record.samples);
+      if (wanted[i] != 0 && !shortlist_[i].tree)
+        shortlist_[i].tree.emplace(shortlist_[i].record.samples);
     });
   }
 
@@ -169,7 +211,7 @@ class Recogniser {
     const ListedModel& listed = shortlist_[pose.listed];
     Candidate candidate;
     candidate.model = listed.model;
-    candidate.votes = matches_.votes[listed.model];
+    candidate.votes = votes_[listed.model];
     candidate.cluster = pose.cluster;
     candidate.support = pose.support;
     candidate.closeness = pose.overlap.closeness;
@@ -178,6 +220,8 @@ class Recogniser {
     candidate.stability = pose.overlap.stability;
     candidate.explained = pose.explained;
     candidate.score = pose.score;
+    if (scene_.eye) candidate.view = pose.overlap.view;
+    candidate.view_score = pose.view_score;
     const Similarity from_file = {.translation = -listed.record.origin};
     const Similarity to_file = {.translation = scene_.origin};
     candidate.pose = to_file * pose.pose * from_file;
@@ -186,7 +230,6 @@ class Recogniser {
 
   /// Ranks models by their best poses.
   void rank() {
-    std::ranges::stable_sort(poses_, std::ranges::greater(), &ExaminedPose::score);
     std::vector<std::uint8_t> seen(shortlist_.size());
     for (const ExaminedPose& pose : poses_)
       if (std::exchange(seen[pose.listed], 1) == 0) result_.ranking.push_back(candidate_of(pose));
@@ -194,7 +237,8 @@ class Recogniser {
 
   /// Finds the best object, then the best one on what of the scene the first leaves, and so on.
   void find_objects() {
-    std::vector<std::uint8_t> used(scene_.samples.points.size());
+    result_.objects.clear();
+    used_.assign(scene_.samples.points.size(), 0);
     std::vector<ExaminedPose> left = poses_;
     while (true) {
       std::erase_if(left,
@@ -205,11 +249,11 @@ class Recogniser {
       const ListedModel& listed = shortlist_[best.listed];
       const auto marks =
           kernels::samples_on_model(*listed.tree, listed.record.diagonal, best.pose, scene_.samples,
-                                    tuning_.objects.used, static_cast<std::int64_t>(used.size()));
-      for (std::size_t i = 0; i < marks.size(); ++i) used[i] |= marks[i];
+                                    tuning_.objects.used, static_cast<std::int64_t>(used_.size()));
+      for (std::size_t i = 0; i < marks.size(); ++i) used_[i] |= marks[i];
       left.erase(left.begin());
       for_each(left.size(), [&](std::size_t i) {
-        examiner_.measure(shortlist_[left[i].listed], left[i], used);
+        examiner_.measure(shortlist_[left[i].listed], left[i], used_);
       });
       std::ranges::stable_sort(left, std::ranges::greater(), &ExaminedPose::score);
     }
@@ -221,7 +265,11 @@ class Recogniser {
   const RecognitionTuning& tuning_;
   const engine::RunContext& context_;
   PoseExaminer examiner_;
+  kernels::OrientedFeatures features_;  ///< Features of the scene that are looked up.
   TripletMatches matches_;
+  std::size_t most_matches_ = 0;             ///< Largest number of matches of one model.
+  std::vector<double> votes_;                ///< Votes of each model in the whole scene.
+  std::vector<std::uint8_t> used_;           ///< Marks samples of the scene that lie on objects.
   std::vector<kernels::FeaturePair> pairs_;  ///< Pairs of the scene, if it has few triplets.
   std::vector<ListedModel> shortlist_;
   std::vector<ExaminedPose> poses_;

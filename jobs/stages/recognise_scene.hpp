@@ -1,20 +1,35 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/run_context.hpp"
 #include "io/library/hash_library.hpp"
 #include "jobs/stages/recognition_tuning.hpp"
+#include "kernels/recognition/overlap.hpp"
 #include "kernels/recognition/recognition_model.hpp"
 #include "kernels/recognition/similarity.hpp"
 
 namespace semigeo::jobs {
 
+/// The sizes that objects may have, in sizes of their models.
+struct ScaleRange {
+  double least = 0;
+  double most = std::numeric_limits<double>::infinity();
+
+  bool has(double scale) const { return scale >= least && scale <= most; }
+  bool is_any() const { return least <= 0 && most == std::numeric_limits<double>::infinity(); }
+  /// Returns the range for scales that single matches suggest, which are less exact.
+  ScaleRange widened() const { return {least / 1.15, most * 1.15}; }
+};
+
 /// How models are found in a scene.
 struct RecognitionOptions {
   double min_score = 0.15;  ///< A model with less is not in the scene: see bench/RECOGNITION.md.
+  ScaleRange scale = {};    ///< Poses of other scales are left out.
   RecognitionTuning tuning = {};
 };
 
@@ -29,7 +44,10 @@ struct Candidate {
   double closeness = 0;  ///< How close what matches lies: 1 on the surface, 0 at the tolerance.
   double stability = 0;  ///< How firmly what matches holds the model: kernels::Overlap.
   double explained = 0;  ///< Share of the scene's surface that lies on the model's.
-  double score = 0;      ///< What counts: see ScoreWeights.
+  double score = 0;      ///< What counts: see ScoreWeights and ViewTuning.
+  /// How the model lies in what the scanner saw, if the scene was seen from one place.
+  std::optional<kernels::View> view = {};
+  double view_score = 0;     ///< The score that counts in such a scene, before its weight.
   kernels::Similarity pose;  ///< Leads from the model to the scene, in coordinates of the files.
 };
 

@@ -41,6 +41,16 @@ json pose_json(const kernels::Similarity& pose) {
           {"alpha_degrees", angles.alpha * kDegrees}};
 }
 
+/// Says how a candidate lies in what the scanner saw.
+json view_json(const Candidate& candidate) {
+  const kernels::View& view = *candidate.view;
+  return {{"score", candidate.view_score},
+          {"there", view.there},
+          {"behind", view.behind},
+          {"nothing", view.nothing},
+          {"opposed", view.opposed}};
+}
+
 json candidates_json(std::span<const Candidate> candidates, const io::HashLibrary& library) {
   json list = json::array();
   for (const Candidate& candidate : candidates) {
@@ -57,6 +67,7 @@ json candidates_json(std::span<const Candidate> candidates, const io::HashLibrar
                     {"stability", candidate.stability},
                     {"explained", candidate.explained},
                     {"pose", pose_json(candidate.pose)}});
+    if (candidate.view) list.back()["view"] = view_json(candidate);
   }
   return list;
 }
@@ -71,6 +82,7 @@ json scene_json(const RecognisedScene& scene) {
                    {"features", scene.features},
                    {"samples", scene.samples},
                    {"turned", scene.turned}};
+  if (scene.eye) document["eye"] = {scene.eye->x(), scene.eye->y(), scene.eye->z()};
   if (scene.repairs) document["repairs"] = json_of(*scene.repairs);
   return document;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
@@ -28,6 +29,8 @@ struct RecognisedScene {
   std::int64_t features = 0;
   std::int64_t samples = 0;
   bool turned = false;  ///< Objects were found only with its triangles facing the other way.
+  /// The place that it was scanned from, in coordinates of the file, if it is taken to be one.
+  std::optional<Eigen::Vector3d> eye = {};
 };
 
 /// The largest number of models in the ranking of the file.

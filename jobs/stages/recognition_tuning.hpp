@@ -52,6 +52,9 @@ struct ClusterTuning {
   std::size_t few_models = 40;  ///< Longer lists of models get the two limits that follow.
   int most_of_many = 24;        ///< Largest number of clusters of a model on a long list.
   int seeds_of_many = 96;       ///< Largest number of poses tried as centres on a long list.
+  /// Number of poses tried as centres in a scene that was seen from one place, where few votes of
+  /// many are right.
+  int seeds_of_view = 3000;
   /// A vote supports a pose from which it differs by less than this.
   kernels::PoseTolerance support = {.log_scale = 0.15, .distance = 0.06, .angle = 0.25};
 };
@@ -118,6 +121,14 @@ struct ObjectTuning {
   kernels::OverlapOptions used = {.match = 0.02, .min_cosine = 0.3};
 };
 
+/// Step 9: what the objects leave of a scene that was seen from one place is looked at once more.
+/// An object that is mostly hidden has few triangles, so more of them are looked up.
+struct SecondLookTuning {
+  double least_left = 0.05;               ///< Least share of the scene that must be left.
+  std::int64_t most_triangles = 200'000;  ///< Largest number of triangles looked up.
+  std::size_t most_matches = 20'000;      ///< Largest number of matches of one model.
+};
+
 /// The weights of the score, measured on thousands of right and wrong poses. The score is
 ///   sqrt(match either) held^h unopposed^u closeness^c (explained wanted)^e
 /// where either = 1 - (1 - match) (1 - explained), held = stability / (stability + half),
@@ -139,6 +150,25 @@ struct ScoreWeights {
   double prior_support = 10;
 };
 
+/// The score in a scene that was seen from one place is
+///   match / visible there / visible sqrt(min(match / enough, 1)) held^h unopposed^u closeness^c
+///   (min(explained / enough, 1) wanted)^e
+/// where visible is the share of the model that should have been seen, and unopposed counts only
+/// what was seen. It is multiplied by `weight`, so that one least score holds for both, and the
+/// larger one of both scores counts.
+struct ViewTuning {
+  double enough_match = 0.2;      ///< A pose that matches less of the model has a lower score.
+  double enough_explained = 0.1;  ///< A pose that explains less of the scene has a lower score.
+  /// The exponents h, u, c and e. What is seen of a right pose is seen nearly without a fault.
+  ScoreWeights score = {.closeness = 12,
+                        .unopposed = 3,
+                        .held = 0.75,
+                        .half_held = 0.015,
+                        .explained = 0.5,
+                        .prior_support = 4};
+  double weight = 0.65;  ///< Scores are multiplied by this.
+};
+
 /// All numbers of recognition. The defaults are what `semigeo recognise` uses.
 struct RecognitionTuning {
   LookUpTuning look_up = {};
@@ -150,7 +180,9 @@ struct RecognitionTuning {
   MeasurementTuning measurement = {};
   SymmetricPoseTuning symmetric_poses = {};
   ObjectTuning objects = {};
+  SecondLookTuning second_look = {};
   ScoreWeights score = {};
+  ViewTuning view = {};
 };
 
 }  // namespace semigeo::jobs

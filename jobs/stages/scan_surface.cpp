@@ -56,6 +56,7 @@ ScanSurface read_surface(const std::filesystem::path& path, const std::string& x
   result.built = kernels::build_surface(std::move(scan.mesh), welding);
   check_usable(path, result.built);
   result.format = scan.format;
+  result.eye = scan.eye;
   result.repairs = {.surface = result.built.repairs,
                     .polygons_triangulated = scan.polygons_triangulated,
                     .faces_skipped = scan.faces_skipped,

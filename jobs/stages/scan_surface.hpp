@@ -1,8 +1,10 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 
 #include "kernels/repair/surface_builder.hpp"
@@ -67,6 +69,8 @@ struct ScanSurface {
   kernels::BuiltSurface built;
   std::string format;  ///< Format of the scan: "PLY binary little endian", ...
   ScanRepairs repairs;
+  /// The place of the scanner in the coordinates of the file, if the file names it.
+  std::optional<Eigen::Vector3d> eye = {};
 };
 
 /// Returns the counts as JSON with sorted keys.

@@ -15,12 +15,25 @@ enum class RecognitionMethod {
   kThesis    ///< Votes and clusters as in the thesis: stages/thesis_recognition.hpp.
 };
 
+/// How it is found out whether a scene was scanned from one place, and from where.
+enum class ViewChoice {
+  kAuto,  ///< The file names the place, or the normals tell: kernels::eye_of_view.
+  kNone   ///< No scene is taken to be scanned from one place.
+};
+
 /// Holds all that a recognition depends on besides the scene and the library.
 struct SearchParameters {
   RecognitionMethod method = RecognitionMethod::kOverlap;
   double min_score = RecognitionOptions{}.min_score;  ///< A model with less is not in the scene.
   double depth_jump = kernels::kDepthJump;            ///< See `kernels::triangulate_grid`.
+  ViewChoice view = ViewChoice::kAuto;
+  std::string scale = "any";  ///< What `scale_range` reads.
 };
+
+/// Returns the sizes that objects may have: "any"; "known" if models and scene have one unit, which
+/// allows for 10 % more or less; or two numbers, "LOW..HIGH". Throws std::invalid_argument if the
+/// text is none of these.
+ScaleRange scale_range(const std::string& text);
 
 /// Returns what each of the parameters is called and which values it may have. A parameter is
 /// declared there and nowhere else.

@@ -134,6 +134,52 @@ class PosedModel {
   const double min_cosine_;
 };
 
+/// Counts how samples of a posed model lie in what a scanner saw.
+class ViewCount {
+ public:
+  ViewCount(const OverlapOptions& options, float spacing, float tolerance)
+      : depths_(options.depths), tolerance_(kLooser * tolerance + spacing / 2) {}
+
+  void add(const Contact& c) {
+    const Vector3f& p = c.posed.point;
+    const Vector3f to_eye = depths_->eye() - p;
+    if (c.posed.normal.dot(to_eye) < kLeastFacing * to_eye.norm()) return;
+    switch (depths_->look(p, tolerance_)) {
+      case Sight::kThere:
+        ++there_;
+        if (c.near >= 0 && !c.matches) ++opposed_;
+        break;
+      case Sight::kBehind:
+        ++behind_;
+        break;
+      case Sight::kNothing:
+        ++nothing_;
+        break;
+      case Sight::kInFront:
+      case Sight::kUnmapped:
+        break;
+    }
+  }
+
+  View shares(std::size_t samples) const {
+    const auto share = [&](std::int64_t count) {
+      return static_cast<double>(count) / static_cast<double>(samples);
+    };
+    return {share(there_), share(behind_), share(nothing_), share(opposed_)};
+  }
+
+ private:
+  static constexpr float kLooser = 1.5F;        // distances along a ray exceed those of surfaces
+  static constexpr float kLeastFacing = 0.35F;  // flatter surfaces are often not measured
+
+  const DepthMap* depths_;
+  float tolerance_;
+  std::int64_t there_ = 0;
+  std::int64_t behind_ = 0;
+  std::int64_t nothing_ = 0;
+  std::int64_t opposed_ = 0;
+};
+
 Similarity turn_about(const Axis& axis, double angle) {
   Similarity turn;
   turn.rotation = Eigen::AngleAxisd(angle, axis.direction).toRotationMatrix();
@@ -189,9 +235,11 @@ Overlap overlap(const SurfaceSamples& model, double diagonal, const Similarity& 
   std::int64_t matches = 0;
   std::int64_t conflicts = 0;
   double closeness = 0;
+  ViewCount view(options, tree.samples().spacing, posed.tolerance());
   std::vector<OrientedPoint> matched;
   for (std::size_t i = 0; i < n; ++i) {
     const Contact c = posed.contact(i, limit);
+    if (options.depths != nullptr) view.add(c);
     if (c.near < 0 || (!used.empty() && used[c.near] != 0)) continue;
     if (c.matches) {
       ++matches;
@@ -201,11 +249,12 @@ Overlap overlap(const SurfaceSamples& model, double diagonal, const Similarity& 
       ++conflicts;
     }
   }
-  if (matches == 0 && conflicts == 0) return {};
+  if (n == 0) return {};
   return {.match = static_cast<double>(matches) / static_cast<double>(n),
           .conflict = static_cast<double>(conflicts) / static_cast<double>(n),
           .closeness = matches == 0 ? 0 : closeness / static_cast<double>(matches),
-          .stability = Slippage(matched).stability()};
+          .stability = Slippage(matched).stability(),
+          .view = view.shares(n)};
 }
 
 std::vector<Similarity> symmetric_poses(const SurfaceSamples& model, double diagonal,

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "kernels/recognition/depth_map.hpp"
 #include "kernels/recognition/recognition_model.hpp"
 #include "kernels/recognition/similarity.hpp"
 
@@ -37,6 +38,20 @@ struct OverlapOptions {
   double conflict = 0.04;   ///< Surfaces that are nearer, but do not match, contradict each other.
   double min_cosine = 0.8;  ///< Least cosine between normals that face the same way.
   bool stability = false;   ///< Whether `Overlap::stability` is computed.
+  /// What a scanner saw of the scene. If it is given, `Overlap::view` is computed.
+  const DepthMap* depths = nullptr;
+};
+
+/// Tells how a posed model lies in what a scanner saw from one place. Only samples count that face
+/// the scanner, by less than 70 degrees. Shares are of all samples.
+struct View {
+  double there = 0;    ///< Share that lies at the distance that was measured.
+  double behind = 0;   ///< Share that would have hidden what was seen behind it.
+  double nothing = 0;  ///< Share that lies where nothing was seen.
+  double opposed = 0;  ///< Share of those `there` near the scene's surface that do not match it.
+
+  /// Returns the share that should have been seen: all but what something hides.
+  double visible() const { return there + behind + nothing; }
 };
 
 /// Tells how a posed model lies in a scene.
@@ -45,6 +60,7 @@ struct Overlap {
   double conflict = 0;   ///< Share of the model's samples near the surface that contradict it.
   double closeness = 0;  ///< Mean of 1 - (distance / tolerance)^2 over the samples that match.
   double stability = 0;  ///< How firmly the samples that match hold it: Slippage::stability.
+  View view = {};        ///< How it lies in what a scanner saw.
 
   /// Returns the match, reduced by contradiction: match closeness (match / (match + conflict))^2.
   double agreement() const;

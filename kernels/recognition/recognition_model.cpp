@@ -14,6 +14,7 @@ RecognitionModel turned_over(RecognitionModel model) {
     feature.code = feature_code(FeatureKind::kMean, feature.value > 0);
   }
   for (Eigen::Vector3f& normal : model.samples.normals) normal = -normal;
+  model.eye.reset();
   return model;
 }
 

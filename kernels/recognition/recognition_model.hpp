@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,10 +28,14 @@ struct RecognitionModel {
   float diagonal = 0;                                ///< Diagonal of the bounding box.
   OrientedFeatures features;
   SurfaceSamples samples;
+  /// The place that the surface was seen from, in the coordinates of the samples, if it was scanned
+  /// from one place.
+  std::optional<Eigen::Vector3d> eye = {};
 };
 
 /// Returns the same object with its triangles facing the other way: normals and mean curvatures
-/// change their sign, Gaussian curvature and torsion do not.
+/// change their sign, Gaussian curvature and torsion do not. The object has no eye any more,
+/// because a scanner does not see the backs of triangles.
 RecognitionModel turned_over(RecognitionModel model);
 
 }  // namespace semigeo::kernels

@@ -58,7 +58,7 @@ TEST(DropHeap, ScalesEachModelToTheSameSizeInAllHeaps) {
   bench::Random random = bench::random(2, 0, "heap");
   for (const PlacedObject& object : drop_heap(models, std::vector<std::size_t>{3, 1}, random))
     EXPECT_NEAR(object.pose.scale * models[object.model]->diagonal,
-                size_in_heaps(*models[object.model]), 1e-12);
+                size_in_heaps(models[object.model]->name), 1e-12);
 }
 
 TEST(MakeHeapScene, PutsTheSurfaceWhereThePosesSay) {
@@ -99,7 +99,6 @@ TEST(MakeHeapScene, IsTheSameForTheSameNumberAndSeed) {
   EXPECT_NE(make_heap_scene(models, 4, 2).mesh.points, first.mesh.points);
   EXPECT_TRUE(first.mixed_pixels);
   EXPECT_EQ(first.noise, 0.1);
-  EXPECT_EQ(first.eye, Vector3d(Vector3d::Zero()));
 }
 
 TEST(MakeHeapScene, NeedsSixModels) {

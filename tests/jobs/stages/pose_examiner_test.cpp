@@ -46,5 +46,44 @@ TEST(ScoreTest, SmallPartsOfAScenePayForWhatTheyLeave) {
   EXPECT_NEAR(score_of(pose, weights), std::pow(0.25, weights.explained), 1e-9);
 }
 
+/// All that should be seen of a model, a fifth of it, is seen and matches.
+ExaminedPose perfect_view() {
+  ExaminedPose pose = perfect_pose();
+  pose.overlap.match = 0.2;
+  pose.overlap.view = {.there = 0.2, .behind = 0, .nothing = 0, .opposed = 0};
+  return pose;
+}
+
+TEST(ViewScoreTest, WhatIsHiddenDoesNotCount) {
+  EXPECT_NEAR(view_score_of(perfect_view(), {}), 1, 1e-9);
+  EXPECT_LT(score_of(perfect_view(), {}), 0.5);
+  ExaminedPose pose = perfect_view();
+  pose.overlap.conflict = 0.3;  // of what was not seen
+  EXPECT_NEAR(view_score_of(pose, {}), 1, 1e-9);
+}
+
+TEST(ViewScoreTest, WhatIsNotSeenWhereItShouldBeCounts) {
+  ExaminedPose pose = perfect_view();
+  pose.overlap.view.nothing = 0.2;
+  EXPECT_NEAR(view_score_of(pose, {}), 0.25, 1e-9);
+  pose = perfect_view();
+  pose.overlap.view.behind = 0.6;
+  EXPECT_NEAR(view_score_of(pose, {}), 1.0 / 16, 1e-9);
+  pose = perfect_view();
+  pose.overlap.view.opposed = 0.2;
+  EXPECT_NEAR(view_score_of(pose, {}), std::pow(0.5, ViewTuning{}.score.unopposed), 1e-9);
+}
+
+TEST(ViewScoreTest, LittleThatMatchesIsWorthLess) {
+  ExaminedPose pose = perfect_view();
+  pose.overlap.match = 0.05;
+  pose.overlap.view.there = 0.05;
+  EXPECT_NEAR(view_score_of(pose, {}), 0.5, 1e-9);
+  pose = perfect_view();
+  pose.explained = 0.025;
+  EXPECT_NEAR(view_score_of(pose, {}), std::pow(0.25, ViewTuning{}.score.explained), 1e-9);
+  EXPECT_EQ(view_score_of({.pose = {}}, {}), 0);
+}
+
 }  // namespace
 }  // namespace semigeo::jobs

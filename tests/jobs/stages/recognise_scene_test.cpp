@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -70,11 +71,15 @@ class RecogniseSceneTest : public testing::Test {
     library_.emplace(folder_ / "library.h5");
   }
 
-  Recognition look_at(TriangleMesh mesh, const Similarity& pose) {
+  kernels::RecognitionModel scene_of(TriangleMesh mesh) {
+    return recognition_model(kernels::build_surface(std::move(mesh)), scene_parameters({}),
+                             context_);
+  }
+
+  Recognition look_at(TriangleMesh mesh, const Similarity& pose,
+                      const RecognitionOptions& options = {}) {
     for (Vector3d& p : mesh.points) p = pose.apply(p);
-    const kernels::RecognitionModel scene =
-        recognition_model(kernels::build_surface(std::move(mesh)), scene_parameters({}), context_);
-    return recognise_scene(*library_, scene, {}, context_);
+    return recognise_scene(*library_, scene_of(std::move(mesh)), options, context_);
   }
 
   tests::TemporaryFolder folder_;
@@ -123,6 +128,62 @@ TEST_F(RecogniseSceneTest, HandlesAreFoundWhereTheyAre) {
     EXPECT_LT(kernels::rotation_between(recognition.objects.front().pose.rotation, pose.rotation),
               5 * kDegree);
   }
+}
+
+/// Adds the triangles of a mesh that face upwards and lie where x > least, at a place.
+void add_seen_from_above(const TriangleMesh& mesh, double least, const Vector3d& place,
+                         TriangleMesh& scene) {
+  const auto first = static_cast<std::int32_t>(scene.points.size());
+  for (const Vector3d& p : mesh.points) scene.points.push_back(p + place);
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Vector3d normal =
+        (mesh.points[b] - mesh.points[a]).cross(mesh.points[c] - mesh.points[a]);
+    if (normal.z() > 0.25 * normal.norm() && mesh.points[a].x() > least)
+      scene.triangles.push_back({first + a, first + b, first + c});
+  }
+}
+
+/// From above one sees a quarter of one body, and the upper sides of four others.
+TEST_F(RecogniseSceneTest, WhatIsHiddenFromOnePlaceSaysNothingAgainstAnObject) {
+  std::vector<TriangleMesh> objects;
+  for (int seed = 0; seed < 6; ++seed)
+    objects.push_back(body(seed, 5, Eigen::Matrix3d::Identity()));
+  learn(objects);
+  TriangleMesh mesh;
+  add_seen_from_above(objects[0], -0.1, Vector3d::Zero(), mesh);
+  for (int other = 1; other < 5; ++other)
+    add_seen_from_above(objects[other], -2, Vector3d(3.0 * other, 0, -other), mesh);
+  kernels::RecognitionModel scene = scene_of(mesh);
+  const auto has_first = [&](const Recognition& recognition) {
+    return std::ranges::any_of(recognition.objects, [](const Candidate& object) {
+      return object.model == 0 &&
+             kernels::rotation_between(object.pose.rotation, Eigen::Matrix3d::Identity()) < kDegree;
+    });
+  };
+  EXPECT_FALSE(has_first(recognise_scene(*library_, scene, {}, context_)));
+  scene.eye = Vector3d(0, 0, 1000);
+  const Recognition seen = recognise_scene(*library_, scene, {}, context_);
+  EXPECT_TRUE(has_first(seen));
+  EXPECT_EQ(seen.objects.size(), 5);
+}
+
+TEST_F(RecogniseSceneTest, ObjectsOfOtherSizesAreLeftOut) {
+  learn({body(0, 4, Eigen::Matrix3d::Identity()), body(1, 4, Eigen::Matrix3d::Identity())});
+  std::mt19937_64 random(6);
+  Similarity pose = random_similarity(random);
+  pose.scale = 1.05;
+  const RecognitionOptions known{.scale = {0.9, 1.1}};
+  const TriangleMesh object = body(0, 4, random_similarity(random).rotation);
+  const Recognition found = look_at(object, pose, known);
+  ASSERT_EQ(found.objects.size(), 1);
+  EXPECT_EQ(found.objects.front().model, 0);
+  EXPECT_NEAR(found.objects.front().pose.scale, 1.05, 0.01);
+  pose.scale = 1.5;
+  EXPECT_EQ(look_at(object, pose).objects.size(), 1);
+  const Recognition other = look_at(object, pose, known);
+  EXPECT_TRUE(other.objects.empty());
+  for (const Candidate& candidate : other.ranking)
+    EXPECT_TRUE(known.scale.has(candidate.pose.scale));
 }
 
 }  // namespace
