@@ -154,25 +154,62 @@ class Inside {
   std::vector<std::int32_t> in_cell_;
 };
 
-/// Returns the parts that lie inside another closed part, of those that are candidates.
-std::vector<bool> enclosed(const Surface& surface, const std::vector<Part>& parts,
-                           const std::vector<bool>& candidate) {
-  std::vector<bool> inside(parts.size(), false);
-  std::vector<std::int32_t> a_vertex(parts.size(), kNone);
-  for (std::int32_t v = 0; v < surface.vertex_count(); ++v) a_vertex[surface.part[v]] = v;
-  for (std::size_t outer = 0; outer < parts.size(); ++outer) {
-    if (!parts[outer].closed) continue;
-    std::vector<std::size_t> within;
-    for (std::size_t inner = 0; inner < parts.size(); ++inner)
-      if (candidate[inner] && !inside[inner] && inner != outer &&
-          parts[outer].box.contains(parts[inner].box))
-        within.push_back(inner);
-    if (within.empty()) continue;
-    const Inside around(surface, static_cast<std::int32_t>(outer), parts[outer].box);
-    for (const std::size_t inner : within)
-      inside[inner] = around.contains(surface.points[a_vertex[inner]].cast<double>());
+/// Tells which parts lie inside which.
+class Nesting {
+ public:
+  Nesting(const Surface& surface, const std::vector<Part>& parts)
+      : surface_(surface), parts_(parts), a_vertex_(parts.size(), kNone) {
+    for (std::int32_t v = 0; v < surface.vertex_count(); ++v) a_vertex_[surface.part[v]] = v;
   }
-  return inside;
+
+  /// Returns the candidates that lie inside a closed part.
+  std::vector<std::size_t> within(std::size_t outer,
+                                  const std::vector<std::size_t>& candidates) const {
+    std::vector<std::size_t> found;
+    for (const std::size_t p : candidates)
+      if (p != outer && parts_[outer].box.contains(parts_[p].box)) found.push_back(p);
+    if (found.empty()) return found;
+    const Inside around(surface_, static_cast<std::int32_t>(outer), parts_[outer].box);
+    std::erase_if(found, [&](std::size_t p) {
+      return !around.contains(surface_.points[a_vertex_[p]].cast<double>());
+    });
+    return found;
+  }
+
+ private:
+  const Surface& surface_;
+  const std::vector<Part>& parts_;
+  std::vector<std::int32_t> a_vertex_;
+};
+
+/// Returns the closed parts that are inside out. A part that encloses a negative volume is, unless
+/// it lies inside another one, where it may be the wall of a cavity. A body all of whose faces look
+/// the wrong way is turned as a whole: of the parts inside an outermost one that is turned, those
+/// whose volume then has the wrong sign for the number of parts around them are turned with it.
+std::vector<std::size_t> inverted(const Surface& surface, const std::vector<Part>& parts) {
+  std::vector<std::size_t> closed;
+  std::vector<std::size_t> outermost;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    if (!parts[p].closed) continue;
+    closed.push_back(p);
+    if (parts[p].volume < 0) outermost.push_back(p);
+  }
+  if (outermost.empty()) return {};
+  const Nesting nesting(surface, parts);
+  for (const std::size_t outer : closed) {
+    const std::vector<std::size_t> inner = nesting.within(outer, outermost);
+    std::erase_if(outermost, [&](std::size_t p) { return std::ranges::binary_search(inner, p); });
+  }
+  std::vector<std::size_t> result = outermost;
+  for (const std::size_t outer : outermost) {
+    const std::vector<std::size_t> inner = nesting.within(outer, closed);
+    std::vector<int> around(parts.size(), 1);
+    for (const std::size_t middle : inner)
+      for (const std::size_t p : nesting.within(middle, inner)) ++around[p];
+    for (const std::size_t p : inner)
+      if ((parts[p].volume > 0) == (around[p] % 2 == 1)) result.push_back(p);
+  }
+  return result;
 }
 
 }  // namespace
@@ -180,18 +217,10 @@ std::vector<bool> enclosed(const Surface& surface, const std::vector<Part>& part
 std::int64_t turn_inverted_parts(Surface& surface, std::span<const Eigen::Vector3f> normals) {
   const std::vector<Part> parts = measure(surface, normals);
   std::vector<bool> turned(parts.size(), false);
-  std::int64_t count = 0;
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    turned[p] = parts[p].closed ? parts[p].volume < 0 : parts[p].against > parts[p].along;
-    count += turned[p];
-  }
-  if (count == 0) return 0;
-  const std::vector<bool> inside = enclosed(surface, parts, turned);
+  for (const std::size_t p : inverted(surface, parts)) turned[p] = true;
   for (std::size_t p = 0; p < parts.size(); ++p)
-    if (inside[p] && parts[p].closed) {
-      turned[p] = false;
-      --count;
-    }
+    if (!parts[p].closed && parts[p].against > parts[p].along) turned[p] = true;
+  const std::int64_t count = std::ranges::count(turned, true);
   if (count == 0) return 0;
   // Corners 1 and 2 change places, and with them half-edges 0 and 2.
   const auto renamed = [](std::int32_t h) { return (h & 1) == 0 ? h ^ 2 : h; };

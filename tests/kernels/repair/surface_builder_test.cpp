@@ -399,6 +399,31 @@ TEST(SurfaceBuilderTest, CavitiesKeepFacingTheOtherWay) {
   EXPECT_GT(parts[2].volume, 0);
 }
 
+// A hollow ball with a ball in its cavity, of which some parts face the wrong way in the file.
+TEST(SurfaceBuilderTest, BodiesThatAreInsideOutAreTurnedAsAWhole) {
+  struct Case {
+    std::array<bool, 3> outward_in_file;
+    int turned;
+    std::array<bool, 3> outward;
+  };
+  for (const Case& c : {Case{{true, false, true}, 0, {true, false, true}},
+                        Case{{false, true, false}, 3, {true, false, true}},
+                        Case{{false, false, true}, 1, {true, false, true}},
+                        Case{{true, true, true}, 0, {true, true, true}}}) {
+    TriangleMesh mesh;
+    for (int i = 0; i < 3; ++i) {
+      TriangleMesh ball = shapes::icosphere(2, 1.0 / (1 + i));
+      if (!c.outward_in_file[i])
+        for (auto& t : ball.triangles) std::swap(t[1], t[2]);
+      append(mesh, ball);
+    }
+    const auto built = build_surface(std::move(mesh));
+    EXPECT_EQ(built.repairs.turned_parts, c.turned);
+    const auto parts = shapes_of(built.surface);
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(parts[i].volume > 0, c.outward[i]) << i;
+  }
+}
+
 TEST(SurfaceBuilderTest, NothingLeftIsAnEmptySurface) {
   const auto built = build_surface({{{0, 0, 0}, {1, 0, 0}}, {{0, 1, 1}}});
   EXPECT_EQ(built.surface.face_count(), 0);
