@@ -87,7 +87,7 @@ Scan read_scan(const std::filesystem::path& path, const ScanOptions& options) {
     Scan scan = format->read(source, options);
     scan.bytes_after_end = source.drain();
     scan.xxh3 = format->companions == nullptr ? source.xxh3() : xxh3_of_scan(path);
-    scan.format = with_compression(std::move(scan.format), source.compression());
+    scan.format = with_compression(scan.format, source.compression());
     return scan;
   } catch (const Error&) {
     source.drain();  // throws if compressed data is damaged, which explains the failure better

@@ -14,7 +14,7 @@ std::vector<std::filesystem::path> datasets_at(const std::filesystem::path& file
   if (!fs::is_directory(status)) return {file_or_archive};
 
   const fs::path scans = file_or_archive / "scans";
-  const std::vector<fs::path> datasets =
+  std::vector<fs::path> datasets =
       dataset_files(fs::is_directory(scans, error) ? scans : file_or_archive);
   if (datasets.empty())
     throw io::Error(file_or_archive, "", "holds no dataset (scans/*.vtkhdf)",

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// It is raised whenever the same scan and parameters give other bytes.
-static constexpr const char* kVersion = "surface 13";
+static constexpr const char* kVersion = "surface 14";
 /// It is added to the version if the levels are octaves, whose bytes may change alone.
 static constexpr const char* kOctavesVersion = ", octaves 2";
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <string_view>
 
 namespace semigeo::jobs {
@@ -20,6 +22,11 @@ inline constexpr std::array<std::string_view, 2> kColourScaleNames = {"safe", "t
 inline constexpr Colour kInvalidColour = {0.45f, 0.45f, 0.47f};
 /// The colour of a surface without a field.
 inline constexpr Colour kPlainColour = {0.72f, 0.74f, 0.78f};
+
+/// Returns a channel of a colour, between 0 and 1, as a byte of an image.
+inline std::uint8_t channel_byte(float channel) {
+  return static_cast<std::uint8_t>(std::lround(255 * channel));
+}
 
 /// Returns the colour of a value between -1 and 1. What lies outside has the colour of the end, and
 /// NaN has kInvalidColour. The pages of the report have the same scales (report/src/colours.ts).

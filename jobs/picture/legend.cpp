@@ -19,8 +19,7 @@ void fill(io::Image& image, int x, int y, int width, int height, const Colour& c
   for (int row = std::max(0, y); row < std::min(image.height, y + height); ++row)
     for (int column = std::max(0, x); column < std::min(image.width, x + width); ++column) {
       std::uint8_t* pixel = &image.rgba[image.at(column, row)];
-      for (std::size_t c = 0; c < colour.size(); ++c)
-        pixel[c] = static_cast<std::uint8_t>(255 * colour[c] + 0.5f);
+      for (std::size_t c = 0; c < colour.size(); ++c) pixel[c] = channel_byte(colour[c]);
       pixel[3] = 255;
     }
 }

@@ -10,8 +10,10 @@
 #include FT_FREETYPE_H
 
 extern "C" {
+// NOLINTBEGIN(readability-identifier-naming): as the assembler spells them
 extern const unsigned char semigeo_font_begin[];
 extern const unsigned char semigeo_font_end[];
+// NOLINTEND(readability-identifier-naming)
 }
 
 namespace semigeo::jobs {
@@ -82,7 +84,7 @@ void Lettering::draw(io::Image& image, int x, int y, std::string_view text,
         const float ink = static_cast<float>(bitmap.buffer[row * bitmap.pitch + column]) / 255;
         std::uint8_t* pixel = &image.rgba[image.at(to_x, to_y)];
         for (std::size_t c = 0; c < colour.size(); ++c)
-          pixel[c] = static_cast<std::uint8_t>((1 - ink) * pixel[c] + ink * 255 * colour[c] + 0.5f);
+          pixel[c] = channel_byte((1 - ink) * static_cast<float>(pixel[c]) / 255 + ink * colour[c]);
         pixel[3] = static_cast<std::uint8_t>(std::max<float>(pixel[3], 255 * ink));
       }
     pen += glyph->advance.x;

@@ -60,6 +60,7 @@ float limit_of(const std::vector<ShownLevel>& levels, const PictureOptions& opti
   if (options.field == PictureField::kNone) return 0;
   if (options.limit) return static_cast<float>(*options.limit);
   std::vector<FieldValues> fields;
+  fields.reserve(levels.size());
   for (const ShownLevel& level : levels) fields.push_back({level.values, level.completeness});
   return robust_limit(fields);
 }
@@ -161,6 +162,7 @@ DatasetPicture picture_of(const io::Dataset& dataset, const PictureOptions& opti
   if (mark_invalid(levels))
     legend.keys.push_back({"no valid patch", kInvalidColour, LegendKey::Shape::kArea});
   std::vector<std::span<const float>> points;
+  points.reserve(levels.size());
   for (const ShownLevel& level : levels) points.push_back(level.points);
   const LegendPainter painter(std::move(legend));
   const int panel_height = options.size - painter.caption_height();

@@ -259,7 +259,7 @@ class Renderer {
         if (covered == 0) continue;
         std::uint8_t* pixel = &image.rgba[image.at(x, first_row + row)];
         for (std::size_t c = 0; c < sum.size(); ++c)
-          pixel[c] = static_cast<std::uint8_t>(255 * sum[c] / static_cast<float>(covered) + 0.5f);
+          pixel[c] = channel_byte(sum[c] / static_cast<float>(covered));
         pixel[3] = static_cast<std::uint8_t>(255 * covered / (kSamples * kSamples));
       }
   }

@@ -31,7 +31,7 @@ std::vector<std::int64_t> histogram(const std::vector<float>& values,
   std::vector<std::int64_t> counts(kBins);
   for (std::size_t v = 0; v < values.size(); ++v) {
     if (completeness[v] <= 0 || !std::isfinite(values[v])) continue;
-    const float place = limit > 0 ? (values[v] / limit + 1) / 2 * kBins : kBins / 2.0f;
+    const float place = limit > 0 ? (values[v] / limit + 1) / 2 * kBins : kBins * 0.5f;
     ++counts[static_cast<std::size_t>(std::clamp(place, 0.0f, kBins - 1.0f))];
   }
   return counts;

@@ -105,9 +105,8 @@ std::vector<PairMatch> match_pairs(std::span<const FeaturePair> scene,
   auto same = model.subspan(0, 0);
   for (std::size_t i = 0; i < scene.size(); ++i) {
     if (i == 0 || scene[i].codes != scene[i - 1].codes) {
-      const auto [first, last] =
-          std::ranges::equal_range(model, scene[i].codes, {}, &FeaturePair::codes);
-      same = std::span(first, last);
+      same = std::span(std::ranges::lower_bound(model, scene[i].codes, {}, &FeaturePair::codes),
+                       std::ranges::upper_bound(model, scene[i].codes, {}, &FeaturePair::codes));
     }
     for (const FeaturePair& pair : same)
       if (compatible(scene[i], pair))

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
-#include <ranges>
+#include <span>
 
 namespace semigeo::kernels {
 
@@ -14,10 +14,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-using Places = std::ranges::subrange<std::vector<std::int32_t>::iterator>;
-
 /// Moves `count` elements that are spread evenly to the front. Both groups keep their order.
-void spread_first(Places places, std::ptrdiff_t count) {
+void spread_first(std::span<std::int32_t> places, std::ptrdiff_t count) {
   if (count <= 0 || count >= std::ssize(places)) return;
   const double step = static_cast<double>(places.size()) / static_cast<double>(count);
   std::vector<std::int32_t> chosen;
@@ -107,8 +105,9 @@ std::vector<std::int32_t> PoseVotes::seeds(int most) const {
   std::ranges::stable_sort(order, std::ranges::greater(), weight);
   if (half > 0) {
     const float least = weight(order[half - 1]);
-    const auto tied = std::ranges::equal_range(order, least, std::ranges::greater(), weight);
-    spread_first(tied, half - (tied.begin() - order.begin()));
+    const auto first = std::ranges::lower_bound(order, least, std::ranges::greater(), weight);
+    const auto last = std::ranges::upper_bound(order, least, std::ranges::greater(), weight);
+    spread_first({first, last}, half - (first - order.begin()));
   }
   std::ranges::sort(order.begin() + half, order.end());
   spread_first({order.begin() + half, order.end()}, most - half);

@@ -92,7 +92,7 @@ class LoopAtTouchingPoints {
   LoopAtTouchingPoints(const Surface& surface, std::vector<BoundaryLoop>& loops)
       : surface_(surface), loops_(loops) {}
 
-  void take_apart(BoundaryLoop loop) {
+  void take_apart(const BoundaryLoop& loop) {
     part_ = loop.part;
     for (const std::int32_t v : loop.vertices) {
       const auto seen = last_.find(key(v));
@@ -193,7 +193,7 @@ std::vector<BoundaryLoop> boundary_loops(const Surface& surface) {
     if (seen[v] || !surface.on_boundary(v)) continue;
     BoundaryLoop loop = trace_loop(surface, v);
     for (const std::int32_t w : loop.vertices) seen[w] = true;
-    LoopAtTouchingPoints(surface, loops).take_apart(std::move(loop));
+    LoopAtTouchingPoints(surface, loops).take_apart(loop);
   }
   std::stable_sort(loops.begin(), loops.end(),
                    [](const auto& a, const auto& b) { return a.part < b.part; });
