@@ -145,6 +145,35 @@ TEST_F(RecogniseJobTest, AnOpenSceneThatFacesTheOtherWayIsRecognised) {
   }
 }
 
+// All triangles face upwards: the scene is taken to be seen from far above.
+TEST_F(RecogniseJobTest, TheFileSaysFromWhereASceneWasSeen) {
+  kernels::TriangleMesh part = shapes::torus(1, 0.4, 60, 24, 0.3);
+  shapes::add_noise(part, 0.02, 1);
+  std::erase_if(part.triangles, [&](const auto& t) {
+    const Eigen::Vector3d normal =
+        (part.points[t[1]] - part.points[t[0]]).cross(part.points[t[2]] - part.points[t[0]]);
+    return normal.z() < 0.3 * normal.norm();
+  });
+  tests::write_obj(job_.scene, part);
+  job_.input_xxh3 = io::xxh3_of_file(job_.scene);
+  run_recognise_job(job_, {.min_score = 0}, context_);
+  const nlohmann::json seen = read_recognised(job_.output);
+  ASSERT_TRUE(seen["scene"].contains("eye"));
+  EXPECT_GT(seen["scene"]["eye"][2].get<double>(), 100);
+  ASSERT_FALSE(seen["ranking"].empty());
+  EXPECT_GT(seen["ranking"][0]["view"]["there"].get<double>(), 0);
+  run_recognise_job(job_, {.min_score = 0, .view = ViewChoice::kNone}, context_);
+  const nlohmann::json all = read_recognised(job_.output);
+  EXPECT_FALSE(all["scene"].contains("eye"));
+  ASSERT_FALSE(all["ranking"].empty());
+  EXPECT_FALSE(all["ranking"][0].contains("view"));
+}
+
+TEST_F(RecogniseJobTest, OtherScalesAreLeftOut) {
+  EXPECT_EQ(run_recognise_job(job_, {.scale = "known"}, context_).objects, 1);
+  EXPECT_EQ(run_recognise_job(job_, {.scale = "1.5..3"}, context_).objects, 0);
+}
+
 TEST_F(RecogniseJobTest, WhatHasChangedMeanwhileIsRefused) {
   const std::string xxh3 = job_.input_xxh3;
   job_.input_xxh3 = "another";
