@@ -43,6 +43,17 @@ class PackageTest(SemigeoTest):
         self.assertEqual(self.field("Section"), "science")
         self.assertTrue(self.package.name.startswith(f"semigeo_{self.field('Version')}_"))
 
+    def test_installs_man_pages_and_completions(self):
+        share = self.root / "usr/share"
+        for path in ("man/man1/semigeo.1", "man/man1/semigeo-run.1", "bash-completion/completions/semigeo",
+                     "zsh/vendor-completions/_semigeo", "fish/vendor_completions.d/semigeo.fish"):
+            self.assertTrue((share / path).is_file(), path)
+        commands = output_of(self.program, "--help")
+        pages = {page.stem for page in (share / "man/man1").iterdir()}
+        self.assertIn("semigeo-picture", pages)
+        self.assertNotIn("semigeo-system-files", pages)
+        self.assertIn("picture", commands)
+
     def test_depends_on_every_library_that_the_program_loads(self):
         named = set(re.findall(r"[a-z0-9][a-z0-9+.-]+(?= |,|$)", self.field("Depends")))
         needed = re.findall(r"NEEDED +(\S+)", output_of("objdump", "-p", self.program))
