@@ -2,6 +2,7 @@
 
 #include <cctype>
 #include <string_view>
+#include <utility>
 
 #include "io/files/file_digest.hpp"
 
@@ -66,15 +67,18 @@ bool is_variant(const std::string& name, const std::string& base) {
 
 std::string given_name(const fs::path& scan, const std::string& name) {
   const std::string path = scan.generic_string();
+  const auto with_name = [&](std::string text) {
+    return std::move(text.append(" (").append(name).append(")"));
+  };
   for (std::size_t at = path.size(); at > 0;) {
     at = path.rfind('/', at - 1);
     at = at == std::string::npos ? 0 : at;
-    const std::string below = path.substr(at == 0 && !path.starts_with('/') ? 0 : at + 1);
+    std::string below = path.substr(at == 0 && !path.starts_with('/') ? 0 : at + 1);
     const std::string base = dataset_name(below);
     if (name == base) return below;
-    if (is_variant(name, base)) return below + " (" + name + ")";
+    if (is_variant(name, base)) return with_name(std::move(below));
   }
-  return path.empty() ? name : scan.filename().string() + " (" + name + ")";
+  return path.empty() ? name : with_name(scan.filename().string());
 }
 
 }  // namespace semigeo::jobs

@@ -43,6 +43,7 @@ void print_as_json() {
 
 void print_as_text() {
   std::vector<std::vector<std::string>> rows;
+  rows.reserve(io::kScanFormats.size());
   for (const io::ScanFormat* format : io::kScanFormats)
     rows.push_back({std::string(format->extension), std::string(format->content),
                     std::string(format->variants)});
