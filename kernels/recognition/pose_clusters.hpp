@@ -32,8 +32,8 @@ struct PoseTolerance {
 /// Says how clusters are formed.
 struct ClusterOptions {
   PoseTolerance tolerance = {};
-  int seeds = 600;  ///< Number of poses tried: half of them by weight, half spread.
-  int most = 120;   ///< Greatest number of clusters.
+  int seeds = 1500;  ///< Number of poses tried: half of them by weight, half spread.
+  int most = 120;    ///< Greatest number of clusters.
 };
 
 /// Holds the votes of one model, 40 bytes each. Source: thesis 4.6. Differs: poses are
