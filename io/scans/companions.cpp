@@ -89,8 +89,8 @@ std::string xxh3_with_companions(const std::string& own, const std::vector<std::
   return xxh3_of_text(text);
 }
 
-std::unique_ptr<ByteStream> open_companion(const fs::path& companion) {
-  const auto place = member_path(companion);
+std::unique_ptr<ByteStream> open_companion(const fs::path& scan, const fs::path& companion) {
+  const auto place = member_path(scan) ? member_path(companion) : std::nullopt;
   if (!place) return is_there(companion) ? std::make_unique<InputFile>(companion) : nullptr;
   auto reader = std::make_unique<ContainerReader>(place->container);
   while (reader->next())
@@ -99,8 +99,8 @@ std::unique_ptr<ByteStream> open_companion(const fs::path& companion) {
   return nullptr;
 }
 
-std::string xxh3_of_companion(const fs::path& companion) {
-  const std::unique_ptr<ByteStream> stream = open_companion(companion);
+std::string xxh3_of_companion(const fs::path& scan, const fs::path& companion) {
+  const std::unique_ptr<ByteStream> stream = open_companion(scan, companion);
   return stream == nullptr ? "" : xxh3_of_stream(*stream);
 }
 
@@ -108,7 +108,7 @@ std::string xxh3_of_scan(const fs::path& scan) {
   const ScanContent content = scan_content(scan);
   std::vector<std::string> others;
   for (const fs::path& companion : content.companions)
-    others.push_back(xxh3_of_companion(companion));
+    others.push_back(xxh3_of_companion(scan, companion));
   return xxh3_with_companions(content.xxh3, others);
 }
 

@@ -39,12 +39,15 @@ ScanContent scan_content(ByteStream& stream);
 /// order; an empty text stands for an absent one. A scan without companions has that of its file.
 std::string xxh3_with_companions(const std::string& own, const std::vector<std::string>& others);
 
-/// Opens a file, or returns nullptr if there is no such file. Throws Error if it cannot be opened.
-std::unique_ptr<ByteStream> open_companion(const std::filesystem::path& companion);
+/// Opens a companion of a scan, or returns nullptr if there is no such file. Only the companions of
+/// a member are looked for in a container. Throws Error if it cannot be opened.
+std::unique_ptr<ByteStream> open_companion(const std::filesystem::path& scan,
+                                           const std::filesystem::path& companion);
 
-/// Returns the XXH3-128 of a file, or an empty text if there is no such file. Throws Error if it
-/// cannot be read.
-std::string xxh3_of_companion(const std::filesystem::path& companion);
+/// Returns the XXH3-128 of a companion of a scan, or an empty text if there is no such file. Throws
+/// Error if it cannot be read.
+std::string xxh3_of_companion(const std::filesystem::path& scan,
+                              const std::filesystem::path& companion);
 
 /// Returns the XXH3-128 of all bytes that a scan is made of. Throws Error if they cannot be read.
 std::string xxh3_of_scan(const std::filesystem::path& scan);

@@ -154,7 +154,7 @@ std::string GltfFile::read_companion(const GltfObject& buffer, std::string_view 
     buffer.fail("its bytes stand in another file, " + shown +
                     ", and the scan has more than 1000 buffers or 64 MiB of JSON",
                 kConvert);
-  const std::unique_ptr<ByteStream> stream = open_companion(path_.parent_path() / *name);
+  const std::unique_ptr<ByteStream> stream = open_companion(path_, path_.parent_path() / *name);
   if (stream == nullptr)
     buffer.fail("its bytes stand in " + shown + ", and there is no such file",
                 "copy that file to its place beside the scan");

@@ -265,7 +265,7 @@ ScanDigest DigestCache::digest_file(const FoundScan& scan, Reading& reading) {
   std::vector<std::string> others;
   for (const fs::path& companion : content.companions) {
     reading.companions.push_back({.path = fs::absolute(companion), .stamp = stamp(companion)});
-    others.push_back(io::xxh3_of_companion(companion));
+    others.push_back(io::xxh3_of_companion(scan.input, companion));
     reading.companions_changed |= stamp(companion) != reading.companions.back().stamp;
   }
   ScanDigest digest{.xxh3 = io::xxh3_with_companions(content.xxh3, others),

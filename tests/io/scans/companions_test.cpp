@@ -107,6 +107,19 @@ TEST_F(Companions, OfAMemberAreMembers) {
   EXPECT_EQ(xxh3_of_scan(member), xxh3_of_scan(plain)) << "wherever it is";
 }
 
+TEST_F(Companions, OfAFileAreNotLookedForInContainersBesideIt) {
+  const fs::path scan = write_file(folder_ / "a.gltf", R"({"buffers":[{"uri":"box.zip/a.bin"}]})");
+  const std::string absent = xxh3_of_scan(scan);
+  tests::write_container(folder_ / "box.zip", "zip", {{.name = "a.bin", .bytes = "one"}});
+  EXPECT_EQ(xxh3_of_scan(scan), absent);
+  write_file(folder_ / "box.zip", "no container");
+  EXPECT_EQ(xxh3_of_scan(scan), absent);
+  fs::remove(folder_ / "box.zip");
+  fs::create_directory(folder_ / "box.zip");
+  write_file(folder_ / "box.zip/a.bin", "one");
+  EXPECT_NE(xxh3_of_scan(scan), absent) << "a folder may have any name";
+}
+
 TEST_F(Companions, WhatWasReadHasTheDigestOfTheFiles) {
   const GltfParts parts = square_parts();
   write_file(folder_ / "a.bin", parts.bytes);
