@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/files/error.hpp"
+#include "io/files/read_error.hpp"
 #include "io/scans/draco_mesh.hpp"
 #include "io/scans/gltf_file.hpp"
 #include "io/scans/scan_builder.hpp"
@@ -241,6 +242,8 @@ class GltfScene {
   void add_normals(const GltfObject& attributes, const Points& points,
                    const Eigen::Matrix3d& to_scene) try {
     append_normals(file_.positions(attributes.integer("NORMAL")), points, to_scene);
+  } catch (const ReadError&) {
+    throw;
   } catch (const Error&) {
   }
 

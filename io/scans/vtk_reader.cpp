@@ -11,6 +11,7 @@
 #include "io/files/error.hpp"
 #include "io/files/lower_case.hpp"
 #include "io/files/printable.hpp"
+#include "io/files/read_error.hpp"
 #include "io/scans/scan_builder.hpp"
 #include "io/scans/scan_formats.hpp"
 #include "io/scans/text_scanner.hpp"
@@ -299,6 +300,8 @@ class VtkReader {
       if (!scanner_->skip_to_content()) return;
       keyword = lower_case(scanner_->word());
     } while (!keyword.empty());
+  } catch (const ReadError&) {
+    throw;
   } catch (const Error&) {
   }
 

@@ -4,6 +4,10 @@
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <Eigen/Geometry>
 
+#include "io/files/byte_source.hpp"
+#include "io/files/read_error.hpp"
+#include "io/scans/scan_formats.hpp"
+
 namespace semigeo::io {
 namespace {
 
@@ -116,6 +120,23 @@ TEST_F(GltfReader, DamagedNormalsCountAsNone) {
   const Scan scan = read("a.gltf", changed(R"("POSITION":0)", R"("POSITION":0,"NORMAL":7)"));
   EXPECT_EQ(scan.mesh.triangles, kTwo);
   EXPECT_TRUE(scan.mesh.normals.empty());
+}
+
+TEST_F(GltfReader, NormalsThatCannotBeReadAreAFailure) {
+  GltfParts parts = square_parts();
+  parts.primitives.insert(parts.primitives.find('{', 1) + 1, R"("NORMAL":2,)");
+  parts.accessors += R"(,{"componentType":5126,"count":4,"type":"VEC3","bufferView":2})";
+  parts.views += R"(,{"buffer":1,"byteLength":48})";
+  const std::string other = R"("},{"byteLength":48,"uri":"n.bin"}]})";
+  const std::string json = replaced(parts.gltf(), R"("}]})", other);
+  const auto file = write_file(folder_ / "a.gltf", json);
+  const auto normals = [&] {
+    ByteSource source(file);
+    return kGltfFormat.read(source, {}).mesh.normals.size();
+  };
+  EXPECT_EQ(normals(), 0u) << "the file is absent";
+  std::filesystem::create_symlink(folder_ / "n.bin", folder_ / "n.bin");
+  EXPECT_THROW(normals(), ReadError);
 }
 
 TEST_F(GltfReader, PassesOverPointsAndLines) {

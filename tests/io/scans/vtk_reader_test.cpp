@@ -1,7 +1,34 @@
+#include <cerrno>
+#include <utility>
+
+#include "io/files/byte_source.hpp"
+#include "io/files/read_error.hpp"
+#include "io/scans/scan_formats.hpp"
 #include "tests/io/scans/vtk_files.hpp"
 
 namespace semigeo::io {
 namespace {
+
+/// A file on a disk that fails once, behind some bytes.
+class FailingStream final : public ByteStream {
+ public:
+  explicit FailingStream(std::string bytes) : bytes_(std::move(bytes)) {}
+  const std::filesystem::path& path() const override { return path_; }
+  std::int64_t position() const override { return static_cast<std::int64_t>(at_); }
+  std::size_t read(std::span<char> bytes) override {
+    if (at_ == bytes_.size() && !std::exchange(failed_, true))
+      throw ReadError(EIO, path_, "", "cannot be read");
+    const std::size_t got = bytes_.copy(bytes.data(), bytes.size(), at_);
+    at_ += got;
+    return got;
+  }
+
+ private:
+  std::filesystem::path path_ = "a.vtk";
+  std::string bytes_;
+  std::size_t at_ = 0;
+  bool failed_ = false;
+};
 
 using VtkReader = ScanFileTest;
 using Eigen::Vector3d;
@@ -163,6 +190,24 @@ TEST_F(VtkReader, BehindDataThatCannotBeReadThereAreNoNormals) {
       EXPECT_EQ(scan.mesh.triangles.size(), 2u) << start;
       EXPECT_TRUE(scan.mesh.normals.empty()) << start;
     }
+}
+
+TEST_F(VtkReader, AFailureOfTheDiskIsNoReasonToLeaveOutNormals) {
+  VtkText file = points(false);
+  file.line("POLYGONS 1 5").numbers(std::vector<int>{4, 0, 1, 2, 3}).line("POINT_DATA 4");
+  file.line("NORMALS n float").numbers(std::vector<float>(9, 1));
+  FailingStream stream(file.text);
+  ByteSource source(stream);
+  EXPECT_THROW(kVtkFormat.read(source, {}), ReadError);
+}
+
+TEST_F(VtkReader, DamagedDataBehindTheFacesIsDamageOfTheFile) {
+  VtkText file = points(false);
+  file.line("POLYGONS 1 5").numbers(std::vector<int>{4, 0, 1, 2, 3}).line("POINT_DATA 40000");
+  std::vector<float> numbers;
+  for (int i = 0; i < 120'000; ++i) numbers.push_back(static_cast<float>(i * 7919 % 10007));
+  const std::string whole = gzip(file.line("NORMALS n float").numbers(numbers).text);
+  expect_parts(error("a.vtk.gz", whole.substr(0, whole.size() / 2)), {"gzip"});
 }
 
 TEST_F(VtkReader, RefusesOtherFiles) {
