@@ -168,10 +168,10 @@ class ScenePageKind final : public PageKind<SceneJobData, PageResult> {
   static std::string key_of(const Job& job) {
     const SceneJobData& scene = data(job);
     const json recognised = read_recognised(job.input);
-    std::string content = recognised.value("job_key", "");
     std::error_code ignored;
-    content += fs::exists(scene.scene, ignored) ? "\nscene" : "\nno scene";
+    std::string content = fs::exists(scene.scene, ignored) ? "scene" : "no scene";
     try {
+      content.append("\n").append(recognised.at("job_key").get<std::string>());
       for (const fs::path& dataset : found_models(recognised, scene.archive))
         content.append("\n").append(fs::exists(dataset, ignored) ? io::read_origin(dataset).job_key
                                                                  : "none");

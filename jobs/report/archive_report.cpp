@@ -65,7 +65,8 @@ void add_dataset(nlohmann::json& record, const fs::path& path, const std::string
   record["levels"] = dataset.level_count();
   record["level"] = level;
   record["features"] = dataset.level(static_cast<int>(level)).features.total();
-  record["dataset_bytes"] = fs::file_size(path);
+  std::error_code error;
+  if (const auto bytes = fs::file_size(path, error); !error) record["dataset_bytes"] = bytes;
   const auto drawn = [&] {
     const std::string png = thumbnail_of(dataset);
     return io::base64(std::as_bytes(std::span(png)));

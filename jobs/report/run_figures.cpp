@@ -31,7 +31,7 @@ std::vector<double> rounded(std::vector<double> values, double step) {
 }
 
 nlohmann::json curve_of(const LastRun& run) {
-  const int count = std::min(kMostSteps, std::max(1, static_cast<int>(run.seconds / 2)));
+  const int count = static_cast<int>(std::clamp(run.seconds / 2, 1.0, double{kMostSteps}));
   const double width = run.seconds / count;
   std::vector<double> rate(static_cast<std::size_t>(count));
   std::vector<double> cores(rate);

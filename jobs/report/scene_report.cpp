@@ -83,7 +83,7 @@ json placed_json(const PlacedSurface& placed) {
   return object;
 }
 
-/// Returns the matrix of a pose. Throws std::runtime_error if it has none.
+/// Returns the matrix of the pose of an object. Throws json::exception if it has none.
 Eigen::Matrix4d matrix_of(const json& object) {
   Eigen::Matrix4d matrix;
   for (int i = 0; i < 4; ++i)

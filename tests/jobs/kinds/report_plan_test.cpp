@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
@@ -106,6 +107,18 @@ TEST_F(ReportPlanTest, APageWithoutADatasetCannotBegin) {
   fs::remove(folder_ / "scans/a.vtkhdf");
   OutputKeys keys;
   EXPECT_THROW(planned.front().job.kind->resolve_inputs(planned.front().job, keys), io::Error);
+}
+
+TEST_F(ReportPlanTest, ARecognisedFileWithoutAKeyStopsNoOtherPage) {
+  make_dataset("a", 1);
+  fs::create_directories(folder_ / "recognised");
+  nlohmann::json document = {{"format", "semigeo-recognition"},
+                             {"format_version", 1},
+                             {"job_key", 7},
+                             {"objects", nlohmann::json::array()}};
+  document["digest"] = io::xxh3_of_text(document.dump());
+  std::ofstream(folder_ / "recognised/s.json") << document.dump(2) << '\n';
+  EXPECT_EQ(to_do(plan()), (Names{"page a", "scene s", "report index.html"}));
 }
 
 TEST_F(ReportPlanTest, JobsSurviveTheWayToAnotherProcess) {

@@ -73,6 +73,15 @@ TEST(RunFiguresTest, CoreTimeAndThroughputAddUp) {
   EXPECT_EQ(figures["passed_over"], "2 .jpg");
 }
 
+TEST(RunFiguresTest, ACurveOfAnyLengthHasFewSteps) {
+  for (const double seconds : {1e3, 1e10, 1e300}) {
+    LastRun run;
+    run.seconds = seconds;
+    run.spans = {{.begin = 0, .end = seconds, .threads = 1, .vertex_levels = 800}};
+    EXPECT_EQ(figures_of(run)["curve"]["rate"].size(), 96u) << seconds;
+  }
+}
+
 TEST(RunFiguresTest, AShortRunHasNoCurve) {
   LastRun run;
   run.seconds = 3;
