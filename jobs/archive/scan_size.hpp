@@ -13,9 +13,9 @@ struct ScanSize {
 };
 
 /// Returns the format and the size. They need only the first kilobyte of the file, and for a file
-/// with companions its JSON. They are empty
-/// and 0 if the file cannot be read. A member of a container is not looked for, because that may
-/// need a pass over the container: its format is the likely one, and its size 0.
+/// with companions its JSON. They are empty and 0 if the file cannot be read. A member of a
+/// container is not looked for, because that may need a pass over the container: its format is the
+/// likely one, and its size 0.
 ScanSize scan_size(const std::filesystem::path& scan);
 
 }  // namespace semigeo::jobs

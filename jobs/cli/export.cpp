@@ -132,8 +132,10 @@ int export_all(const ExportOptions& options, const std::vector<fs::path>& datase
   const auto work = [&](std::size_t i) {
     try {
       return kDone + export_dataset(datasets[i], options);
-    } catch (const std::exception& e) {
+    } catch (const io::Error& e) {
       return kFailed + std::string(e.what());
+    } catch (const std::exception& e) {  // it does not name the dataset
+      return kFailed + std::string(io::Error(datasets[i], "", e.what()).what());
     }
   };
   const auto results = in_children(datasets.size(), 0, work,

@@ -21,7 +21,7 @@ using kernels::kContourKinds;
 using kernels::kFeatureKindNames;
 using kernels::kFeatureKinds;
 
-/// A picture has at most so many pixels: about a gigabyte of memory.
+/// A picture has at most so many pixels. It and its PNG take about two gigabytes of memory then.
 constexpr std::int64_t kMostPixels = 200'000'000;
 
 struct PictureCommand {
