@@ -115,7 +115,7 @@ Head head_of(const MeshView& mesh, const std::string& unit) {
 std::uint8_t linear(std::uint8_t channel) {
   const double c = channel / 255.0;
   const double light = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-  return static_cast<std::uint8_t>(255 * light + 0.5);
+  return static_cast<std::uint8_t>(std::lround(255 * light));
 }
 
 void write_arrays(OutputFile& output, const MeshView& mesh) {
