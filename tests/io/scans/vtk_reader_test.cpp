@@ -194,8 +194,9 @@ TEST_F(VtkReader, BehindDataThatCannotBeReadThereAreNoNormals) {
 
 TEST_F(VtkReader, AFailureOfTheDiskIsNoReasonToLeaveOutNormals) {
   VtkText file = points(false);
-  file.line("POLYGONS 1 5").numbers(std::vector<int>{4, 0, 1, 2, 3}).line("POINT_DATA 4");
-  file.line("NORMALS n float").numbers(std::vector<float>(9, 1));
+  file.line("POLYGONS 1 5").numbers(std::vector<int>{4, 0, 1, 2, 3}).line("POINT_DATA 900000");
+  file.line("NORMALS n float").numbers(std::vector<float>(2'000'000, 1));
+  ASSERT_GT(file.text.size(), 2 * std::size_t{ByteSource::kWindowBytes});
   FailingStream stream(file.text);
   ByteSource source(stream);
   EXPECT_THROW(kVtkFormat.read(source, {}), ReadError);
