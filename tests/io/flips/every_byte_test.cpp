@@ -117,9 +117,7 @@ class EveryByte : public testing::Test {
     bytes << std::ifstream(path_, std::ios::binary).rdbuf();
     good_ = bytes.str();
     expected_ = answer_of(path_);
-    const std::size_t batch = 64 * stride;
-    for (std::size_t begin = 0; begin < good_.size(); begin += batch)
-      read_mutants(begin, std::min(begin + batch, good_.size()), stride, answer_of);
+    for (std::size_t at = 0; at < good_.size();) at = read_mutants(at, stride, answer_of);
     RecordProperty("flips", std::to_string(flips_));
     RecordProperty("crashes", std::to_string(crashes_));
   }
@@ -128,26 +126,33 @@ class EveryByte : public testing::Test {
   fs::path path_ = folder_ / "file";
 
  private:
-  /// Reads mutants in a child process, because HDF5 crashes on some of them. There, a crash is one
-  /// failed job, which names the file.
-  void read_mutants(std::size_t begin, std::size_t end, std::size_t stride, AnswerOf answer_of) {
-    constexpr double kSeconds = 10;  // an endless loop counts as a crash
+  /// Reads some mutants in a child process, because HDF5 crashes on some of them, and reads others
+  /// for ever. There, that is one failed job, which names the file. Returns the next byte to flip.
+  std::size_t read_mutants(std::size_t begin, std::size_t stride, AnswerOf answer_of) {
+    constexpr std::size_t kMutants = 512;
+    constexpr double kSeconds = 10;
+    const std::size_t end = std::min(begin + kMutants * stride, good_.size());
+    const fs::path progress = folder_ / "progress";
     const auto work = [&] {
       std::string findings;
-      for (std::size_t at = begin; at < end; at += stride) findings += finding(at, answer_of);
+      for (std::size_t at = begin; at < end; at += stride) {
+        std::ofstream(progress) << at;
+        findings += finding(at, answer_of);
+      }
       return findings;
     };
     const engine::ForkedResult result = engine::ForkedChild(work, kSeconds).wait();
+    std::size_t last = end;
     if (result.exit_code == 0) {
       EXPECT_EQ(result.text, "");
-      flips_ += (end - begin + stride - 1) / stride;
-    } else if (end - begin > stride) {
-      const std::size_t middle = begin + (end - begin) / stride / 2 * stride;
-      read_mutants(begin, std::max(middle, begin + stride), stride, answer_of);
-      read_mutants(std::max(middle, begin + stride), end, stride, answer_of);
     } else {
+      std::ifstream(progress) >> last;
       ++crashes_;
+      ++last;
     }
+    const std::size_t flips = (last - begin + stride - 1) / stride;
+    flips_ += flips;
+    return begin + flips * stride;
   }
 
   /// Returns what is wrong about a mutant, or an empty text.
