@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "engine/fork_child.hpp"
 #include "engine/machine.hpp"
+#include "io/files/error.hpp"
 
 namespace semigeo::jobs {
 
@@ -29,5 +31,8 @@ std::vector<engine::ForkedResult> in_children(std::size_t count, int at_once, co
   }
   return results;
 }
+
+/// Returns the error about a file whose reader in a child process did not come to its end.
+io::Error unfinished_reading(const engine::ForkedResult& result, const std::filesystem::path& file);
 
 }  // namespace semigeo::jobs

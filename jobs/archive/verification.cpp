@@ -50,19 +50,7 @@ std::string answer_about(const fs::path& file, Verify verify) {
 Verified result_of(const engine::ForkedResult& result, const fs::path& file) {
   if (result.exit_code == 0 && !result.text.empty())
     return {.problem = result.text.substr(1), .was_read = result.text.front() == kRead};
-  if (result.signal == SIGKILL)
-    return {.problem = io::Error(file, "",
-                                 "was not read to its end: the process that read it was killed, by "
-                                 "hand or because memory ran out",
-                                 "free some memory, and run again")
-                           .what(),
-            .was_read = false};
-  return {.problem = io::Error(file, "",
-                               result.signal == SIGXCPU
-                                   ? "it is damaged so that HDF5 never ends reading it"
-                                   : "it is damaged so that HDF5 crashes over it",
-                               "remove it and run again, or run with --verify")
-                         .what()};
+  return {.problem = unfinished_reading(result, file).what(), .was_read = result.signal != SIGKILL};
 }
 
 std::vector<Verified> verify_all(const std::vector<fs::path>& files, Verify verify, int at_once) {

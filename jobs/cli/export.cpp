@@ -151,9 +151,7 @@ int export_all(const ExportOptions& options, const std::vector<fs::path>& datase
     if (text.starts_with(kFailed)) {
       complain(text.substr(1));
     } else {
-      complain(io::Error(datasets[i], "",
-                         "was not read to its end: the process that read it crashed or was ended",
-                         "check the archive: semigeo check ARCHIVE"));
+      complain(unfinished_reading(results[i], datasets[i]));
     }
   }
   io::remove_stale_partials(options.output);

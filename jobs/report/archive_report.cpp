@@ -16,6 +16,7 @@
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
 #include "jobs/archive/dataset_files.hpp"
+#include "jobs/archive/in_children.hpp"
 #include "jobs/archive/journal.hpp"
 #include "jobs/archive/path_text.hpp"
 #include "jobs/archive/sources.hpp"
@@ -49,9 +50,10 @@ nlohmann::json without_zeros(const nlohmann::json& counts) {
   return result;
 }
 
-/// Adds what the dataset of a scan says, and its thumbnail, which is drawn unless its page has it.
-/// Throws io::Error if the dataset cannot be read.
-void add_dataset(nlohmann::json& record, const fs::path& path, const std::string& icon) {
+/// Returns what the dataset of a scan says, and its thumbnail, which is drawn unless its page has
+/// it. Throws io::Error if the dataset cannot be read.
+nlohmann::json record_of(const fs::path& path, const std::string& icon) {
+  nlohmann::json record;
   const io::Dataset dataset(path);
   const io::DatasetHeader& header = dataset.header();
   const io::LevelInfo first = dataset.level(0);
@@ -72,6 +74,42 @@ void add_dataset(nlohmann::json& record, const fs::path& path, const std::string
     return io::base64(std::as_bytes(std::span(png)));
   };
   record["thumbnail"] = icon.empty() ? drawn() : icon;
+  return record;
+}
+
+/// What a dataset says, or why it cannot be read.
+struct ReadDataset {
+  nlohmann::json record;
+  std::string problem;
+};
+
+/// Reads datasets, each in a child process, because HDF5 crashes over some that are damaged.
+std::vector<ReadDataset> read_datasets(const std::vector<fs::path>& datasets,
+                                       const fs::path& folder) {
+  constexpr char kRead = 'r';
+  constexpr char kProblem = 'x';
+  constexpr double kSeconds = 60;
+  const auto answer = [&](std::size_t i) {
+    try {
+      const std::string icon = read_icon(scan_page_path(folder, datasets[i].stem().string()));
+      return kRead + record_of(datasets[i], icon).dump();
+    } catch (const std::exception& e) {
+      return kProblem + std::string(e.what());
+    }
+  };
+  const auto results =
+      in_children(datasets.size(), 1, answer, [](std::size_t) { return kSeconds; });
+  std::vector<ReadDataset> read(datasets.size());
+  for (std::size_t i = 0; i < datasets.size(); ++i) {
+    const std::string& text = results[i].text;
+    if (results[i].exit_code != 0 || text.empty())
+      read[i].problem = unfinished_reading(results[i], datasets[i]).what();
+    else if (text.front() == kRead)
+      read[i].record = nlohmann::json::parse(text.substr(1));
+    else
+      read[i].problem = text.substr(1);
+  }
+  return read;
 }
 
 /// Returns a relative path as a URL, in which every byte but letters, digits and some marks is %XX.
@@ -123,13 +161,14 @@ class ReportReader {
 
   nlohmann::json read() {
     const std::vector<fs::path> datasets = dataset_files(archive_ / "scans");
-    std::map<std::string, fs::path> names;
-    for (const fs::path& path : datasets) names[path.stem().string()] = path;
+    const std::vector<ReadDataset> read = read_datasets(datasets, folder_);
+    std::map<std::string, const ReadDataset*> names;
+    for (std::size_t i = 0; i < datasets.size(); ++i) names[datasets[i].stem().string()] = &read[i];
     for (const auto& [name, source] : sources_.by_name()) names.try_emplace(name);
     for (const auto& [job, error] : history_.run.failed)
       if (job.starts_with(kSurface)) names.try_emplace(job.substr(kSurface.size()));
     if (names.empty() && !status_.last_run) throw no_archive(archive_);
-    for (const auto& [name, path] : names) scans_.push_back(scan(name, path));
+    for (const auto& [name, dataset] : names) scans_.push_back(scan(name, dataset));
     std::ranges::stable_sort(scans_, {}, [](const nlohmann::json& s) { return order_of(s); });
     return {{"archive", escaped(fs::weakly_canonical(archive_).filename().string())},
             {"run", run()},
@@ -152,23 +191,22 @@ class ReportReader {
     return run;
   }
 
-  nlohmann::json scan(const std::string& name, const fs::path& dataset) const {
+  nlohmann::json scan(const std::string& name, const ReadDataset* dataset) const {
     nlohmann::json record = {{"name", name}, {"title", title_of(name)}};
     if (const auto made = history_.made.find(name); made != history_.made.end()) {
       record["seconds"] = made->second.seconds;
       record["peak_bytes"] = made->second.peak_bytes;
     }
-    try {
-      if (!dataset.empty()) {
-        add_dataset(record, dataset, read_icon(scan_page_path(folder_, name)));
-        add_page(record, scan_page_path(folder_, name));
-      }
-    } catch (const io::Error& e) {
+    if (dataset != nullptr && !dataset->problem.empty()) {
       record["state"] = "damaged";
-      add_reason(record, e.what());
+      add_reason(record, dataset->problem);
       return record;
     }
-    add_state(record, name, !dataset.empty());
+    if (dataset != nullptr) {
+      record.update(dataset->record);
+      add_page(record, scan_page_path(folder_, name));
+    }
+    add_state(record, name, dataset != nullptr);
     return record;
   }
 

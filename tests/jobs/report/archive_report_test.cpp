@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
@@ -38,6 +39,27 @@ class ArchiveReportTest : public testing::Test {
 
   tests::TemporaryFolder folder_;
 };
+
+// HDF5 crashes over some changes of the list of what the virtual datasets show, and reads others
+// for ever.
+TEST_F(ArchiveReportTest, DamagedDatasetsHarmNoOther) {
+  make_dataset("a.obj", "a.obj");
+  std::stringstream whole;
+  whole << std::ifstream(folder_ / "scans" / "a.obj.vtkhdf", std::ios::binary).rdbuf();
+  const std::size_t heap = whole.str().find("GCOL");
+  ASSERT_NE(heap, std::string::npos);
+  for (std::size_t at = heap; at < heap + 400; at += 7) {
+    std::string bad = whole.str();
+    bad[at] = static_cast<char>(~bad[at]);
+    std::ofstream(folder_ / "scans" / ("bad" + std::to_string(at) + ".vtkhdf"), std::ios::binary)
+        << bad;
+  }
+  std::ofstream(folder_ / "scans" / "text.vtkhdf") << "text";
+  const nlohmann::json document = report();
+  ASSERT_EQ(document["scans"].size(), 60);
+  EXPECT_EQ(document["scans"][0]["state"], "damaged");
+  EXPECT_EQ(document["scans"].back()["state"], "done");
+}
 
 TEST_F(ArchiveReportTest, TellsWhatADatasetHoldsAndWhatItsJobTook) {
   make_dataset("a.obj", "a.obj");
