@@ -36,12 +36,7 @@ std::string npy_head(const std::string& type, const std::string& shape) {
 std::string utf32(std::string_view text) {
   std::string result;
   while (!text.empty()) {
-    const std::size_t bytes = utf8_character(text);
-    const auto byte = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    char32_t code = bytes == 0 ? 0xfffd : byte(0);
-    if (bytes > 1) code &= 0x7fu >> bytes;
-    for (std::size_t i = 1; i < bytes; ++i) code = code << 6 | (byte(i) & 0x3fu);
-    text.remove_prefix(bytes == 0 ? 1 : bytes);
+    const char32_t code = take_utf8_character(text);
     for (int shift = 0; shift < 32; shift += 8) result += static_cast<char>(code >> shift & 0xff);
   }
   return result;

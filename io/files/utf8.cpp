@@ -40,6 +40,16 @@ std::size_t utf8_character(std::string_view text) {
   return 0;
 }
 
+char32_t take_utf8_character(std::string_view& text) {
+  const std::size_t bytes = utf8_character(text);
+  const auto byte = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  char32_t code = bytes == 0 ? 0xfffd : byte(0);
+  if (bytes > 1) code &= 0x7fu >> bytes;
+  for (std::size_t i = 1; i < bytes; ++i) code = code << 6 | (byte(i) & 0x3fu);
+  text.remove_prefix(bytes == 0 ? 1 : bytes);
+  return code;
+}
+
 bool is_utf8(std::string_view text) {
   while (!text.empty()) {
     const std::size_t bytes = utf8_character(text);

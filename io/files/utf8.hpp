@@ -10,6 +10,10 @@ namespace semigeo::io {
 /// not begin with a UTF-8 character.
 std::size_t utf8_character(std::string_view text);
 
+/// Removes the first character from `text`, which must not be empty, and returns its code point. A
+/// byte that belongs to no character counts as U+FFFD.
+char32_t take_utf8_character(std::string_view& text);
+
 /// Returns whether `text` is UTF-8.
 bool is_utf8(std::string_view text);
 

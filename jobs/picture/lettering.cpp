@@ -17,22 +17,7 @@ extern const unsigned char semigeo_font_end[];
 }
 
 namespace semigeo::jobs {
-namespace {
-
-/// Returns the number of the first character of a text, and removes it from the text.
-FT_ULong take_character(std::string_view& text) {
-  const std::size_t bytes = io::utf8_character(text);
-  const auto byte = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  FT_ULong code = bytes == 0 ? 0xfffd : byte(0);
-  if (bytes > 1) {
-    code = byte(0) & (0x7fu >> bytes);
-    for (std::size_t i = 1; i < bytes; ++i) code = code << 6 | (byte(i) & 0x3fu);
-  }
-  text.remove_prefix(std::max<std::size_t>(bytes, 1));
-  return code;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 struct Lettering::Font {
   explicit Font(int size) {
@@ -64,7 +49,7 @@ Lettering::~Lettering() = default;
 int Lettering::width(std::string_view text) const {
   FT_Pos width = 0;  // in 64ths of a pixel
   while (!text.empty())
-    if (const FT_GlyphSlot glyph = font_->load(take_character(text)); glyph != nullptr)
+    if (const FT_GlyphSlot glyph = font_->load(io::take_utf8_character(text)); glyph != nullptr)
       width += glyph->advance.x;
   return static_cast<int>((width + 63) / 64);
 }
@@ -73,7 +58,7 @@ void Lettering::draw(io::Image& image, int x, int y, std::string_view text,
                      const Colour& colour) const {
   FT_Pos pen = FT_Pos{64} * x;
   while (!text.empty()) {
-    const FT_GlyphSlot glyph = font_->load(take_character(text));
+    const FT_GlyphSlot glyph = font_->load(io::take_utf8_character(text));
     if (glyph == nullptr) continue;
     const FT_Bitmap& bitmap = glyph->bitmap;
     for (int row = 0; row < static_cast<int>(bitmap.rows); ++row)

@@ -32,5 +32,12 @@ TEST(Utf8, WhatIsNoneIsReplacedAndTheRestStays) {
   EXPECT_TRUE(is_utf8(as_utf8("\xc3(\xed\xa0\x80\xf0")));
 }
 
+TEST(Utf8, CharactersAreTakenOneByOne) {
+  std::string_view text = "a\xc3\xa9\xff\xe5\x85\x94\xf0\x9f\x90\x87";
+  std::u32string codes;
+  while (!text.empty()) codes += take_utf8_character(text);
+  EXPECT_EQ(codes, U"a\u00e9\ufffd\u5154\U0001f407");
+}
+
 }  // namespace
 }  // namespace semigeo::io
