@@ -28,12 +28,13 @@ void add_face(const kernels::LevelMesh& mesh, std::int32_t f, double edge_limit,
     const std::int32_t h = kernels::halfedge(f, i);
     sum.boundary_edges += surface.twin[h] == kernels::kNone;
     const double length = (p[i == 2 ? 0 : i + 1] - p[i]).norm();
-    if (length > edge_limit) {
-      outlier = true;
-    } else if (surface.twin[h] <= h) {  // otherwise counted from the other side
-      sum.edge_length += length;
-      sum.edges += 1;
-    }
+    const bool beyond = length > edge_limit;
+    outlier |= beyond;
+    // An edge is counted from one of its sides. There is no branch because it would be a random
+    // one.
+    const bool counted = !beyond & (surface.twin[h] <= h);
+    sum.edge_length += static_cast<double>(counted) * length;
+    sum.edges += counted;
   }
   const double twice_area = (p[1] - p[0]).cross(p[2] - p[0]).norm();
   const Eigen::Vector3d corners = p[0] + p[1] + p[2];

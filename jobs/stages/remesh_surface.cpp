@@ -11,6 +11,8 @@ constexpr std::int64_t kFaceBlock = 8192;
 /// The sides and heights that refining makes exceed the shortest side by this factor, so that a
 /// change of the mean edge length cannot make them odd.
 constexpr double kMargin = 2;
+/// Few edges are so many times as long as the mean edge, and they are usually enough to refine.
+constexpr double kMuchLonger = 1.5;
 
 /// Returns the faces or edges that `find` picks from ranges of faces, in the order of the faces.
 template <typename Find>
@@ -67,8 +69,7 @@ RemeshResult remesh_surface(kernels::LevelMesh& mesh, std::vector<PartMeasure> p
     if (!std::exchange(refined, true)) {
       const std::int64_t target = options.faces - remesher.counts().dropped_faces;
       const double least = kMargin * result.shortest_side;
-      // Usually few faces are missing, and few edges are enough to choose from.
-      for (const double longer : {reference, 2 * least}) {
+      for (const double longer : {kMuchLonger * reference, reference, 2 * least}) {
         if (remesher.face_count() >= target) break;
         const auto find_long = [&](std::int32_t begin, std::int32_t end, auto& edges) {
           kernels::find_long_edges(mesh, begin, end, longer, edges);
