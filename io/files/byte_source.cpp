@@ -31,11 +31,7 @@ ByteSource::ByteSource(const std::filesystem::path& path) : ByteSource(open_byte
 ByteSource::ByteSource(ByteStream& stream) : ByteSource(std::make_unique<LentStream>(stream)) {}
 
 ByteSource::ByteSource(std::unique_ptr<ByteStream> given)
-    : path_(given->path()),
-      file_(std::move(given)),
-      raw_(*file_),
-      window_(std::make_unique_for_overwrite<char[]>(kWindowBytes)) {
-  cursor_ = end_ = window_.get();
+    : path_(given->path()), file_(std::move(given)), raw_(*file_) {
   const auto* const file = dynamic_cast<const InputFile*>(file_.get());
   Unpacked content = unpacked(std::make_unique<LentStream>(raw_));
   stream_ = std::move(content.stream);
@@ -43,7 +39,10 @@ ByteSource::ByteSource(std::unique_ptr<ByteStream> given)
     compression_ = content.compression->name;
   } else if (file != nullptr) {
     size_ = file->size();
+    window_bytes_ = std::min(kWindowBytes, static_cast<std::size_t>(file->size()) + 1);
   }
+  window_ = std::make_unique_for_overwrite<char[]>(window_bytes_);
+  cursor_ = end_ = window_.get();
 }
 
 ByteSource::~ByteSource() = default;
@@ -58,7 +57,7 @@ bool ByteSource::refill(std::size_t bytes) {
   std::memmove(window_.get(), cursor_, kept);
   cursor_ = window_.get();
   while (kept < bytes && !ended_) {
-    const std::size_t got = stream_->read({window_.get() + kept, kWindowBytes - kept});
+    const std::size_t got = stream_->read({window_.get() + kept, window_bytes_ - kept});
     ended_ = got == 0;
     kept += got;
   }

@@ -69,6 +69,7 @@ class ByteSource {
   std::unique_ptr<ByteStream> file_;
   HashedStream raw_;
   std::unique_ptr<ByteStream> stream_;
+  std::size_t window_bytes_ = kWindowBytes;  // less for a plain file that is smaller
   std::unique_ptr<char[]> window_;
   const char* cursor_ = nullptr;
   const char* end_ = nullptr;

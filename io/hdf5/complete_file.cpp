@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/files/error.hpp"
+#include "io/files/small_file.hpp"
 
 namespace semigeo::io {
 namespace {
@@ -40,8 +41,7 @@ Hdf5File open_complete(const std::filesystem::path& path, const FileFormat& form
 }
 
 nlohmann::json read_json_attribute(const Hdf5File& file, const std::string& name) {
-  auto document = nlohmann::json::parse(file.read_attribute_as<std::string>("/", name), nullptr,
-                                        /*allow_exceptions=*/false);
+  auto document = parse_json(file.read_attribute_as<std::string>("/", name), {});
   if (document.is_discarded())
     throw Error(file.path(), "attribute " + name, "is not JSON",
                 "the file is damaged or not one of semigeo's");

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "io/files/small_file.hpp"
 #include "io/hdf5/array_reader.hpp"
 #include "io/library/hash_library_format.hpp"
 #include "io/library/packed_model.hpp"
@@ -65,11 +66,11 @@ Hdf5File::Array open_rows(const Hdf5File& file, const std::string& path, Element
   return array;
 }
 
-/// Returns the parameters. A text that is not JSON becomes a string, which no program knows as
-/// parameters.
+/// Returns the parameters. A text that is no JSON object becomes a string, which no program knows
+/// as parameters.
 nlohmann::json parameters_in(const Hdf5File& file) {
   auto text = file.read_attribute_as<std::string>("/", "parameters");
-  auto parameters = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+  auto parameters = parse_json(text, {});
   return parameters.is_discarded() ? nlohmann::json(std::move(text)) : parameters;
 }
 

@@ -9,6 +9,7 @@
 #include "io/files/file_digest.hpp"
 #include "io/files/number_text.hpp"
 #include "io/files/read_error.hpp"
+#include "io/files/small_file.hpp"
 #include "jobs/archive/scan_size.hpp"
 #include "jobs/plan/plan.hpp"
 #include "jobs/plan/typed_job_kind.hpp"
@@ -365,7 +366,7 @@ SurfaceJobData& surface_data(Job& job) {
 
 std::string surface_key(const std::string& name, const std::string& input_xxh3,
                         const std::string& parameters_json) {
-  const json parameters = json::parse(parameters_json, nullptr, false);
+  const json parameters = io::parse_json(parameters_json, {});
   const bool octaves = parameters.is_object() && parameters.contains("schedule") &&
                        parameters["schedule"] == "octaves";
   return io::xxh3_of_text(kVersion + std::string(octaves ? kOctavesVersion : "") + '\n' +

@@ -25,7 +25,7 @@ std::vector<Reason> differences(const io::DatasetOrigin& origin, const Job& job)
   const std::string& input_xxh3 = surface_data(job).input_xxh3;
   if (origin.input_xxh3 != input_xxh3)
     reasons.push_back({.kind = Kind::kScan, .before = origin.input_xxh3, .now = input_xxh3});
-  const auto parameters_before = nlohmann::json::parse(origin.parameters_json, nullptr, false);
+  const auto parameters_before = io::parse_json(origin.parameters_json, {});
   std::ranges::move(parameter_differences(parameters_before, json_of(surface_data(job).parameters)),
                     std::back_inserter(reasons));
   // If this program gives another key to the old inputs, it makes other bytes of them.

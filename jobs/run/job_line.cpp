@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "io/files/small_file.hpp"
 #include "jobs/archive/path_text.hpp"
 
 namespace semigeo::jobs {
@@ -14,7 +15,11 @@ using nlohmann::json;
 template <typename Read>
 auto reading(const char* what, const std::string& line, const Read& read) {
   try {
-    return read(json::parse(line));
+    // Values are copied and compared bracket by bracket, so they must not be deep in each other.
+    const json object = io::parse_json(line, {});
+    if (object.is_discarded() && json::accept(line))
+      throw std::runtime_error(std::string("is no ") + what + ": it is another kind of JSON");
+    return read(object.is_discarded() ? json::parse(line) : object);
   } catch (const json::exception& e) {
     throw std::runtime_error(std::string("is no ") + what + ": " + e.what());
   }

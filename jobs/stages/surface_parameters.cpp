@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "io/files/printable.hpp"
 #include "io/files/utf8.hpp"
 #include "jobs/stages/depth_jump_row.hpp"
 #include "jobs/stages/parameter_json.hpp"
@@ -22,8 +23,8 @@ using Number = NumberIn<Surface, double>;
 std::string unit_problem(const std::string& unit) {
   constexpr const char* kRemedy = "give a short name such as mm or inch";
   if (!io::is_utf8(unit)) return std::string("is not UTF-8; ") + kRemedy;
-  const bool plain =
-      !unit.empty() && unit.size() <= 32 && unit.find_first_of("\"\\\n\r\t") == std::string::npos;
+  const bool plain = !unit.empty() && unit.size() <= 32 && io::printable(unit) == unit &&
+                     unit.find_first_of("\"\\") == std::string::npos;
   return plain ? std::string() : kRemedy;
 }
 

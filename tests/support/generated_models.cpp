@@ -87,8 +87,8 @@ std::vector<kernels::Triplet> generated_triplets(int index, const kernels::Recog
   }
   const auto place = [](const kernels::Triplet& t) { return std::tie(t.cell, t.corners); };
   std::ranges::sort(triplets, {}, place);
-  const auto twice = std::ranges::unique(triplets, {}, place);
-  triplets.erase(twice.begin(), twice.end());
+  const auto is_twice = [&](const auto& a, const auto& b) { return place(a) == place(b); };
+  triplets.erase(std::unique(triplets.begin(), triplets.end(), is_twice), triplets.end());
   return triplets;
 }
 

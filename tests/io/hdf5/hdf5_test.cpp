@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <thread>
 
 #include "io/files/error.hpp"
 #include "io/hdf5/array_reader.hpp"
+#include "io/hdf5/complete_file.hpp"
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -278,6 +280,19 @@ TEST(Hdf5, FullDiskIsAnErrorAndTheProcessGoesOn) {
   Hdf5File file = Hdf5File::create(folder / "other.h5");
   file.write_array("/a", array);
   EXPECT_NO_THROW(file.close());
+}
+
+/// JSON is copied and compared bracket by bracket, on the stack.
+TEST(CompleteFileTest, AttributesWithBracketsDeepInEachOtherAreNoJson) {
+  const tests::TemporaryFolder folder;
+  Hdf5File file = Hdf5File::create(folder / "file");
+  const std::string deep = "{\"a\":" + std::string(30'000, '[') + std::string(30'000, ']') + "}";
+  file.write_attribute("/", "deep", deep);
+  file.write_attribute("/", "flat", "{\"a\":[1]}");
+  file.close();
+  const Hdf5File read = Hdf5File::open(folder / "file");
+  EXPECT_EQ(read_json_attribute(read, "flat").at("a").at(0), 1);
+  EXPECT_THROW(read_json_attribute(read, "deep"), Error);
 }
 
 }  // namespace

@@ -318,5 +318,16 @@ TEST(JobLineTest, ALineThatIsNoneIsRefused) {
   }
 }
 
+/// Values are copied and compared bracket by bracket, on the stack.
+TEST(JobLineTest, BracketsDeepInEachOtherAreRefused) {
+  const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
+  const std::string reply =
+      "{\"worked\":0,\"cpu_seconds\":0,\"peak_bytes\":0,\"done\":" + deep + "}";
+  EXPECT_THROW(job_reply_from(reply), std::runtime_error);
+  std::string request = to_line({.job = plain_job(), .log = {}});
+  request.insert(1, "\"more\":" + deep + ",");
+  EXPECT_THROW(job_request_from(request, all_kinds()), std::runtime_error);
+}
+
 }  // namespace
 }  // namespace semigeo::jobs

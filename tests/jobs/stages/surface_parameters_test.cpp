@@ -71,5 +71,16 @@ TEST(SurfaceParametersTest, HaveKeysNamesAndHelpOfTheirOwn) {
   }
 }
 
+/// A configuration file cannot hold a control character, and a terminal should not.
+TEST(SurfaceParametersTest, UnitsAreNamesThatCanBeWrittenAndShown) {
+  for (const Parameter<SurfaceParameters>& row : surface_parameter_table()) {
+    if (row.key != std::string("length_unit")) continue;
+    const auto problem = std::get<Text<SurfaceParameters>>(row.value).problem;
+    for (const char* unit : {"mm", "inch", "µm", "nautical mile"}) EXPECT_EQ(problem(unit), "");
+    for (const char* unit : {"", "m\x04", "m\nm", "m\x1b[0m", "m\xe2\x80\xaem", "m\"", "m\\"})
+      EXPECT_NE(problem(unit), "") << unit;
+  }
+}
+
 }  // namespace
 }  // namespace semigeo::jobs
