@@ -92,6 +92,12 @@ std::unique_ptr<Libarchive> libarchive_of(std::unique_ptr<InputFile> file) {
   return archive;
 }
 
+constexpr const char* kTar = ".tar";
+/// Extensions of containers, without those of a tar file that has that of its compression behind
+/// it.
+constexpr std::array<std::string_view, 7> kContainerExtensions = {".zip",  ".7z",  kTar,   ".tgz",
+                                                                  ".tbz2", ".txz", ".tzst"};
+
 /// Throws the Error of a file that is no container.
 [[noreturn]] void refuse(const fs::path& container) {
   std::array<char, 1024> begin{};
@@ -120,16 +126,17 @@ std::string in_brackets(const std::string& message) {
 }  // namespace
 
 bool is_container_name(const fs::path& path) {
-  static constexpr std::array kExtensions = {".zip",  ".7z",  ".tar", ".tgz",
-                                             ".tbz2", ".txz", ".tzst"};
   const std::string name = lower_case(path.filename().string());
   const std::string extension = fs::path(name).extension().string();
-  if (std::ranges::find(kExtensions, extension) != kExtensions.end()) return true;
-  return compression_of_name(name) != nullptr && fs::path(name).stem().extension() == ".tar";
+  if (std::ranges::find(kContainerExtensions, extension) != kContainerExtensions.end()) return true;
+  return compression_of_name(name) != nullptr && fs::path(name).stem().extension() == kTar;
 }
 
-std::string_view container_extensions() {
-  return ".zip, .7z, .tar, .tgz or .tar.gz";
+std::vector<std::string> container_extensions() {
+  std::vector<std::string> extensions(kContainerExtensions.begin(), kContainerExtensions.end());
+  for (const FileCompression& compression : kFileCompressions)
+    extensions.push_back(kTar + std::string(compression.extension));
+  return extensions;
 }
 
 std::optional<MemberPath> member_path(const fs::path& path) {

@@ -20,8 +20,8 @@ class Libarchive;
 /// and the same for the other compressions. The case does not matter. The file is not looked at.
 bool is_container_name(const std::filesystem::path& path);
 
-/// Returns the extensions of containers, for messages.
-std::string_view container_extensions();
+/// Returns all extensions of containers: ".zip", ".tar.gz".
+std::vector<std::string> container_extensions();
 
 /// A place in a container: "box.zip/part/a.ply" is "part/a.ply" in box.zip.
 struct MemberPath {

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "io/files/printable.hpp"
+
 namespace semigeo::io {
 namespace {
 
@@ -17,10 +19,10 @@ std::string sentence(const std::filesystem::path& file, const std::string& place
 }  // namespace
 
 Error::Error(std::filesystem::path file, std::string place, std::string problem, std::string remedy)
-    : std::runtime_error(sentence(file, place, problem, remedy)),
+    : std::runtime_error(sentence(file, place, printable(problem), remedy)),
       file_(std::move(file)),
       place_(std::move(place)),
-      problem_(std::move(problem)),
+      problem_(printable(problem)),
       remedy_(std::move(remedy)) {}
 
 }  // namespace semigeo::io

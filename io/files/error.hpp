@@ -11,7 +11,9 @@ namespace semigeo::io {
 class Error : public std::runtime_error {
  public:
   /// `place` is a line, a byte or a dataset ("line 12", "byte 4096", "/levels/000/points"); it may
-  /// be empty. `remedy` is what the reader of the message can do; it may be empty.
+  /// be empty. `remedy` is what the reader of the message can do; it may be empty. A problem may
+  /// quote the file: what is not printable in it becomes escapes (`printable`), so that a zero byte
+  /// or the end of a line does not cut the sentence.
   Error(std::filesystem::path file, std::string place, std::string problem,
         std::string remedy = {});
 

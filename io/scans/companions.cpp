@@ -72,6 +72,11 @@ std::optional<std::string> companion_name(std::string_view reference) {
   return name.empty() ? std::nullopt : std::optional(name);
 }
 
+bool may_have_companions(const fs::path& scan) {
+  const ScanFormat* const format = scan_format_of(scan);
+  return format != nullptr && format->companions != nullptr;
+}
+
 ScanContent scan_content(const fs::path& scan) {
   return scan_content(*open_bytes(scan));
 }

@@ -21,6 +21,9 @@ inline constexpr std::int64_t kMostCompanionJson = std::int64_t{64} << 20;
 /// with a scheme, names with a zero byte.
 std::optional<std::string> companion_name(std::string_view reference);
 
+/// Returns whether scans of this name may have companions.
+bool may_have_companions(const std::filesystem::path& scan);
+
 /// What a scan's own file says about its content.
 struct ScanContent {
   std::string xxh3;  ///< XXH3-128 of its bytes.

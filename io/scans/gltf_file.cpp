@@ -50,11 +50,20 @@ GltfFile::GltfFile(ByteSource& source) : path_(source.path()) {
     file_bytes_ = std::ssize(text);
     parse(text);
   }
-  decoded_.resize(static_cast<std::size_t>(root().size("buffers")));
   check_extensions();
 }
 
 GltfFile::~GltfFile() = default;
+
+std::size_t DecodedBuffers::bytes() const {
+  std::size_t sum = 0;
+  for (const Kept& kept : kept_) sum += kept.bytes->size();
+  return sum;
+}
+
+void DecodedBuffers::drop() {
+  while (kept_.size() > 1 && bytes() > kMostBytes + kept_.front().bytes->size()) kept_.pop_back();
+}
 
 GltfObject GltfFile::root() const {
   return {path_, *json_, ""};
@@ -168,14 +177,14 @@ std::string GltfFile::read_companion(const GltfObject& buffer, std::string_view 
   return bytes;
 }
 
-std::string_view GltfFile::buffer(std::int64_t index) {
+GltfBytes GltfFile::buffer(std::int64_t index) {
   const GltfObject buffer = root().item("buffers", index);
   const std::optional<std::string_view> uri = buffer.text("uri");
-  std::string_view bytes;
+  GltfBytes result;
+  std::string_view& bytes = result.bytes;
   if (uri) {
-    auto& decoded = decoded_[static_cast<std::size_t>(index)];
-    if (!decoded) decoded = decode_uri(buffer, *uri);
-    bytes = *decoded;
+    result.keeper = decoded_.get(index, [&] { return decode_uri(buffer, *uri); });
+    bytes = *result.keeper;
   } else {
     if (index != 0 || chunk_.data() == nullptr) buffer.fail("it has no bytes", kExportAgain);
     bytes = chunk_;
@@ -185,7 +194,8 @@ std::string_view GltfFile::buffer(std::int64_t index) {
     buffer.fail("it promises " + std::to_string(length) + " bytes, but has only " +
                     std::to_string(bytes.size()),
                 kExportAgain);
-  return bytes.substr(0, static_cast<std::size_t>(length));
+  bytes = bytes.substr(0, static_cast<std::size_t>(length));
+  return result;
 }
 
 bool GltfFile::has_elements(std::int64_t accessor) const {
@@ -193,24 +203,27 @@ bool GltfFile::has_elements(std::int64_t accessor) const {
   return object.has("bufferView") || object.has("sparse");
 }
 
-std::string_view GltfFile::view_bytes(std::int64_t index) {
+GltfBytes GltfFile::view_bytes(std::int64_t index) {
   const GltfObject view = root().item("bufferViews", index);
   if (view.has("extensions") && view.object("extensions").has(kMeshopt))
     view.fail("it is compressed by meshopt, which is not supported",
               "export the scan without compression (EXT_meshopt_compression)");
-  const std::string_view bytes = buffer(view.integer("buffer"));
+  GltfBytes result = buffer(view.integer("buffer"));
+  const std::string_view bytes = result.bytes;
   const std::int64_t view_offset = view.integer("byteOffset", 0);
   const std::int64_t length = view.integer("byteLength");
   if (view_offset > std::ssize(bytes) || length > std::ssize(bytes) - view_offset)
     view.fail("it reaches beyond the end of its buffer", kExportAgain);
-  return bytes.substr(static_cast<std::size_t>(view_offset), static_cast<std::size_t>(length));
+  result.bytes =
+      bytes.substr(static_cast<std::size_t>(view_offset), static_cast<std::size_t>(length));
+  return result;
 }
 
-void GltfFile::locate(const GltfObject& owner, Elements& elements) {
+GltfBytes GltfFile::locate(const GltfObject& owner, Elements& elements) {
   const std::int64_t index = owner.integer("bufferView");
   const GltfObject view = root().item("bufferViews", index);
-  const std::string_view bytes = view_bytes(index);
-  const std::int64_t length = std::ssize(bytes);
+  GltfBytes view_of_all = view_bytes(index);
+  const std::int64_t length = std::ssize(view_of_all.bytes);
   const std::int64_t element_bytes = component_bytes(elements.type) * elements.components;
   elements.stride = view.integer("byteStride", element_bytes);
   if (elements.stride < element_bytes)
@@ -221,7 +234,8 @@ void GltfFile::locate(const GltfObject& owner, Elements& elements) {
     owner.fail("its " + std::to_string(elements.count) +
                    " elements reach beyond the end of their bufferView",
                kExportAgain);
-  if (elements.count > 0) elements.data = bytes.data() + offset;
+  if (elements.count > 0) elements.data = view_of_all.bytes.data() + offset;
+  return view_of_all;
 }
 
 std::int64_t GltfFile::component_bytes(Type type) {
@@ -265,8 +279,9 @@ void GltfFile::copy(const Elements& elements, Number* to) {
 template <typename Number>
 std::vector<Number> GltfFile::read(const GltfObject& accessor, Elements elements) {
   elements.count = accessor.integer("count");
+  GltfBytes held;
   if (accessor.has("bufferView")) {
-    locate(accessor, elements);
+    held = locate(accessor, elements);
   } else if (elements.count > file_bytes_ && elements.count > bytes_of_buffers()) {
     accessor.fail("it has more elements than the file has bytes", kExportAgain);
   }
@@ -281,27 +296,29 @@ void GltfFile::replace_sparse(const GltfObject& sparse, const Elements& all,
                               std::vector<Number>& numbers) {
   const GltfObject places = sparse.object("indices"), values = sparse.object("values");
   Elements index{.count = sparse.integer("count"), .type = index_type(places)};
-  locate(places, index);
+  const GltfBytes held_places = locate(places, index);
   Elements value = all;
   value.count = index.count;
-  locate(values, value);
+  const GltfBytes held_values = locate(values, value);
   std::vector<std::uint32_t> indices(static_cast<std::size_t>(index.count));
   copy(index, indices.data());
+  Elements one = value;
+  one.count = 1;
   for (std::int64_t i = 0; i < index.count; ++i) {
     if (indices[i] >= all.count)
       places.fail(
           "it refers to element " + std::to_string(indices[i]) + " of " + std::to_string(all.count),
           kExportAgain);
-    Elements one = value;
-    one.count = 1;
-    one.data += i * value.stride;
+    one.data = value.data + i * value.stride;
     copy(one, numbers.data() + indices[i] * all.components);
   }
 }
 
 std::int64_t GltfFile::bytes_of_buffers() {
+  if (bytes_of_buffers_) return *bytes_of_buffers_;
   std::int64_t bytes = 0;
-  for (std::int64_t i = 0; i < root().size("buffers"); ++i) bytes += std::ssize(buffer(i));
+  for (std::int64_t i = 0; i < root().size("buffers"); ++i) bytes += std::ssize(buffer(i).bytes);
+  bytes_of_buffers_ = bytes;
   return bytes;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -13,6 +14,43 @@
 #include "io/scans/gltf_json.hpp"
 
 namespace semigeo::io {
+
+/// Bytes of a buffer that was decoded, or of the file itself.
+struct GltfBytes {
+  std::string_view bytes;
+  std::shared_ptr<const std::string> keeper = {};  ///< Keeps the bytes of a decoded buffer.
+};
+
+/// The buffers that were decoded and used last. A file may have a thousand of them.
+class DecodedBuffers {
+ public:
+  /// The bytes that are kept, besides those of the buffer that was used last.
+  static constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+
+  /// Returns the buffer of this number. Calls `decode`, which returns its bytes, if it is not kept.
+  template <typename Decode>
+  std::shared_ptr<const std::string> get(std::int64_t index, const Decode& decode) {
+    const auto found = std::ranges::find(kept_, index, &Kept::index);
+    if (found != kept_.end()) {
+      std::rotate(kept_.begin(), found, found + 1);
+    } else {
+      kept_.insert(kept_.begin(), Kept{index, std::make_shared<const std::string>(decode())});
+      drop();
+    }
+    return kept_.front().bytes;
+  }
+  /// Returns the bytes that are kept.
+  std::size_t bytes() const;
+
+ private:
+  struct Kept {
+    std::int64_t index;
+    std::shared_ptr<const std::string> bytes;
+  };
+  void drop();
+
+  std::vector<Kept> kept_;  ///< The one that was used last comes first.
+};
 
 /// A glTF 2.0 file in memory: JSON, or binary (.glb) with JSON and a chunk of bytes in it, and the
 /// buffers of it in files beside it (companions.hpp), once they are needed. Gives the elements of
@@ -34,8 +72,8 @@ class GltfFile {
   std::vector<double> positions(std::int64_t accessor);
   /// Returns the numbers of an accessor of indices.
   std::vector<std::uint32_t> indices(std::int64_t accessor);
-  /// Returns the bytes of a bufferView. They are valid as long as the file.
-  std::string_view view_bytes(std::int64_t view);
+  /// Returns the bytes of a bufferView.
+  GltfBytes view_bytes(std::int64_t view);
   /// Returns whether an accessor has elements of its own.
   bool has_elements(std::int64_t accessor) const;
   /// Returns the largest number that an accessor of indices could hold.
@@ -64,12 +102,13 @@ class GltfFile {
   std::string_view read_binary(ByteSource& source);
   void parse(std::string_view text);
   void check_extensions() const;
-  std::string_view buffer(std::int64_t index);
+  GltfBytes buffer(std::int64_t index);
   std::string decode_uri(const GltfObject& buffer, std::string_view uri) const;
   std::string read_companion(const GltfObject& buffer, std::string_view uri) const;
   std::int64_t bytes_of_buffers();
   /// Finds the elements in the bufferView that `owner`, an accessor or a part of one, refers to.
-  void locate(const GltfObject& owner, Elements& elements);
+  /// They are valid as long as what is returned.
+  [[nodiscard]] GltfBytes locate(const GltfObject& owner, Elements& elements);
   template <typename Number>
   std::vector<Number> read(const GltfObject& accessor, Elements elements);
   template <typename Number>
@@ -89,8 +128,8 @@ class GltfFile {
   std::int64_t json_bytes_ = 0;
   bool binary_ = false;
   std::unique_ptr<nlohmann::json> json_;
-  std::vector<std::optional<std::string>>
-      decoded_;  // buffers that do not stand in the chunk, if used
+  DecodedBuffers decoded_;
+  std::optional<std::int64_t> bytes_of_buffers_;
 };
 
 }  // namespace semigeo::io

@@ -182,7 +182,7 @@ class GltfScene {
     if (ids.has("NORMAL")) normal_id = ids.integer("NORMAL");
     Corners corners;
     try {
-      DracoMesh mesh = decode_draco(file_.view_bytes(packed.integer("bufferView")),
+      DracoMesh mesh = decode_draco(file_.view_bytes(packed.integer("bufferView")).bytes,
                                     ids.integer("POSITION"), normal_id);
       corners.count = std::ssize(mesh.indices);
       corners.indices = std::move(mesh.indices);

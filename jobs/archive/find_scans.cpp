@@ -14,6 +14,7 @@
 #include "io/files/container.hpp"
 #include "io/files/error.hpp"
 #include "io/files/lower_case.hpp"
+#include "io/scans/companions.hpp"
 #include "io/scans/scan_reader.hpp"
 #include "jobs/archive/containers.hpp"
 #include "jobs/archive/names.hpp"
@@ -109,6 +110,32 @@ void note(const FoundScan& container, const io::ContainerListing& listing,
         " members have the name of one before them; the first of each name is read");
 }
 
+/// Returns the files that a scan names. One that cannot be read has none; its job says why.
+std::vector<fs::path> companions_of(const fs::path& scan) {
+  try {
+    return io::scan_content(scan).companions;
+  } catch (const io::Error&) {
+    return {};
+  }
+}
+
+/// Returns the folders in a container whose files may belong to a scan: those with such a scan.
+std::set<std::string> folders_with_companions(const io::ContainerListing& listing) {
+  std::set<std::string> folders;
+  for (const io::Member& member : listing.members)
+    if (io::may_have_companions(member.name))
+      folders.insert(fs::path(member.name).parent_path().string());
+  return folders;
+}
+
+/// Returns whether a member looks like a part of a scan beside it. To be sure, the container would
+/// have to be read.
+bool is_part_of_scan(const std::string& member, const std::set<std::string>& folders) {
+  return kind_of(member) == ".bin" && std::ranges::any_of(folders, [&](const std::string& folder) {
+           return is_within(member, folder);
+         });
+}
+
 /// Searches inputs for scans.
 class Search {
  public:
@@ -132,6 +159,7 @@ class Search {
 
   FoundScans found() && {
     const std::map<fs::path, io::ContainerListing> listings = listings_of_containers();
+    leave_out_companions();
     FoundScans result{.scans = {}, .passed_over = std::move(passed_over_files_)};
     std::set<fs::path> counted;
     for (Found& each : found_) {
@@ -240,6 +268,26 @@ class Search {
     for (FoundScan& folder : search.unsearched) found_.push_back({std::move(folder), std::nullopt});
   }
 
+  /// Corrects the numbers of files that were passed over: files that belong to a scan were not.
+  void leave_out_companions() {
+    std::set<fs::path> known;
+    for (const Found& each : found_) {
+      if (passed_over_files_.files.empty()) return;
+      if (each.within || !each.scan.error.empty() || !io::may_have_companions(each.scan.input))
+        continue;
+      for (const fs::path& companion : companions_of(each.scan.input))
+        if (was_passed_over(companion) && known.insert(identity(companion)).second)
+          passed_over_files_.forget(kind_of(companion));
+    }
+  }
+
+  /// Returns whether a file was counted.
+  bool was_passed_over(const fs::path& file) const {
+    std::error_code ignored;
+    return fs::is_regular_file(file, ignored) && !is_hidden(file) && !wants(file) &&
+           counted_.contains(id_of(file.parent_path()));
+  }
+
   /// Lists each container once. The key is its identity.
   std::map<fs::path, io::ContainerListing> listings_of_containers() const {
     std::map<fs::path, io::ContainerListing> listings;
@@ -259,11 +307,12 @@ class Search {
   static void add_members(const Found& container, const io::ContainerListing& listing, bool counts,
                           FoundScans& result) {
     std::vector<FoundScan> scans;
+    const std::set<std::string> folders = folders_with_companions(listing);
     for (const io::Member& member : listing.members) {
       if (is_hidden_member(member.name) || !is_within(member.name, *container.within)) continue;
       if (io::is_scan_name(member.name)) {
         scans.push_back(found_member(container.scan, member));
-      } else if (counts) {
+      } else if (counts && !is_part_of_scan(member.name, folders)) {
         pass_over(container.scan, member, result.passed_over);
       }
     }
@@ -293,6 +342,11 @@ FoundScans find(const std::vector<fs::path>& inputs, Search search) {
 }
 
 }  // namespace
+
+void PassedOver::forget(const std::string& kind) {
+  const auto count = files.find(kind);
+  if (count != files.end() && --count->second == 0) files.erase(count);
+}
 
 std::string in_words(const PassedOver& passed_over) {
   constexpr std::size_t kMostKinds = 20;

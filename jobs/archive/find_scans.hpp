@@ -21,12 +21,16 @@ struct FoundScan {
   std::uintmax_t bytes = 0;  ///< Size of the member as the container tells it.
 };
 
-/// The files that a search of folders has passed over because they are no scans.
+/// The files that a search of folders has passed over because they are no scans, and belong to none
+/// (io/scans/companions.hpp).
 struct PassedOver {
   /// The number of files of each kind. A kind is an extension in lower case (".jpg"), or "other".
   std::map<std::string, std::int64_t> files = {};
   /// Sentences about what may have been meant: containers in containers, for example.
   std::vector<std::string> notes = {};
+
+  /// Counts one file of a kind less.
+  void forget(const std::string& kind);
 };
 
 /// Returns "12 .jpg, 3 .mtl, 2 other", the most frequent kind first, or an empty text. The kinds

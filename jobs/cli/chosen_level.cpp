@@ -11,7 +11,7 @@ void require_level(const io::Dataset& dataset, int level) {
     throw io::Error(
         dataset.path(), "level " + std::to_string(level),
         "does not exist; there are " + std::to_string(dataset.level_count()) + " levels",
-        "give --level 0 to " + std::to_string(dataset.level_count() - 1));
+        "give a level from 0 to " + std::to_string(dataset.level_count() - 1));
 }
 
 }  // namespace semigeo::jobs::cli

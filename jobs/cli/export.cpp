@@ -16,6 +16,7 @@
 #include "jobs/cli/datasets.hpp"
 #include "jobs/cli/export_level.hpp"
 #include "jobs/cli/output.hpp"
+#include "jobs/run/local_runner.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {
@@ -122,6 +123,16 @@ double most_seconds(const fs::path& dataset) {
   return kLeast + (error ? 0 : static_cast<double>(bytes) / kBytesPerSecond);
 }
 
+/// Returns the memory that exporting a level of a dataset takes at most. Measured on datasets of
+/// one level, with which it takes most for their size.
+std::uint64_t most_bytes(const fs::path& dataset) {
+  constexpr std::uint64_t kBase = 25'000'000;
+  constexpr std::uint64_t kPerByte = 4;
+  std::error_code error;
+  const auto bytes = fs::file_size(dataset, error);
+  return kBase + (error ? 0 : kPerByte * bytes);
+}
+
 /// Exports datasets into a folder, each in a child process: what one of them does stops no other.
 int export_all(const ExportOptions& options, const std::vector<fs::path>& datasets) {
   std::error_code error;
@@ -138,8 +149,10 @@ int export_all(const ExportOptions& options, const std::vector<fs::path>& datase
       return kFailed + std::string(io::Error(datasets[i], "", e.what()).what());
     }
   };
-  const auto results = in_children(datasets.size(), 0, work,
-                                   [&](std::size_t i) { return most_seconds(datasets[i]); });
+  const auto results = in_children(
+      datasets.size(), execution_settings({}).total, work,
+      [&](std::size_t i) { return most_seconds(datasets[i]); },
+      [&](std::size_t i) { return most_bytes(datasets[i]); });
   std::size_t failed = 0;
   for (std::size_t i = 0; i < datasets.size(); ++i) {
     const std::string& text = results[i].text;

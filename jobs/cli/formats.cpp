@@ -13,11 +13,16 @@
 namespace semigeo::jobs::cli {
 namespace {
 
-std::string compressions() {
-  std::string text;
+/// Returns a sentence about packed scans, in lines that fit a narrow terminal.
+std::string about_packed_scans() {
+  std::string text = "Each also compressed: ";
   for (const io::FileCompression& compression : io::kFileCompressions)
-    text += (text.empty() ? "" : ", ") + std::string(compression.extension);
-  return text;
+    text += std::string(compression.extension) + ", ";
+  text.resize(text.size() - 2);
+  text += ".\nIn containers, too: ";
+  for (const std::string& extension : io::container_extensions()) text += extension + ", ";
+  text.resize(text.size() - 2);
+  return text + ".\n\n";
 }
 
 void print_as_json() {
@@ -48,8 +53,7 @@ void print_as_text() {
     rows.push_back({std::string(format->extension), std::string(format->content),
                     std::string(format->variants)});
   print_text("Scans that are read:\n" + table_text(rows, 2, "lll"));
-  print_text("Each also compressed: " + compressions() +
-             "; and in containers: " + std::string(io::container_extensions()) + "\n\n");
+  print_text(about_packed_scans());
   rows.clear();
   for (const ExportFormatInfo& format : kExportFormats)
     rows.push_back({std::string(format.extension), std::string(format.content)});

@@ -24,6 +24,10 @@ using kernels::kFeatureKinds;
 /// A picture has at most so many pixels. It and its PNG take about two gigabytes of memory then.
 constexpr std::int64_t kMostPixels = 200'000'000;
 
+/// Bounds of --limit.
+constexpr double kLeastLimit = 1e-30;
+constexpr double kGreatestLimit = 1e30;
+
 struct PictureCommand {
   std::string dataset;
   std::string output;
@@ -32,6 +36,15 @@ struct PictureCommand {
   double limit = 0;      ///< 0: a robust limit.
   PictureOptions picture;
 };
+
+/// Returns what is wrong with the text of --limit, or an empty string. Colours are computed in
+/// single precision.
+std::string limit_problem(const std::string& text) {
+  double value = 0;
+  const bool is_number = CLI::detail::lexical_cast(text, value);
+  if (is_number && (value == 0 || (value >= kLeastLimit && value <= kGreatestLimit))) return "";
+  return "give a curvature from 1e-30 to 1e30, or 0";
+}
 
 int make_picture(PictureCommand& command) {
   if (io::lower_case(std::filesystem::path(command.output).extension().string()) != ".png")
@@ -105,8 +118,7 @@ void add_picture(CLI::App& app, int& exit_code) {
   command
       ->add_option("--limit", options->limit,
                    "End of the colours, as a curvature in the scan's unit; 0: found in the data")
-      ->check(CLI::NonNegativeNumber)
-      ->check(refuse_nan);
+      ->check(CLI::Validator(limit_problem, ""));
   command->add_option("--features", options->features, "Mark features of this kind")
       ->check(CLI::IsMember({"gaussian", "mean", "gaussian_torsion", "mean_torsion", "all"}));
   command

@@ -14,7 +14,6 @@
 #include "jobs/cli/temporary_folder.hpp"
 #include "jobs/kinds/report.hpp"
 #include "jobs/kinds/report_plan.hpp"
-#include "jobs/report/archive_report.hpp"
 
 namespace semigeo::jobs::cli {
 namespace {
@@ -45,17 +44,16 @@ PageCounts count_pages(const RunResult& result) {
 }
 
 /// Returns what the first page, which the last job of the plan makes, shows.
-ReportJobResult shown_in(const RunResult& result, const ReportPlace& place) {
+ReportJobResult shown_in(const RunResult& result) {
   const std::any& made = result.outcomes.back().result;
   if (const auto* counts = std::any_cast<ReportJobResult>(&made)) return *counts;
   if (!is_made(result.outcomes.back().state)) return {};
-  const nlohmann::json document = archive_report(place.archive, place.folder);
-  return {std::ssize(document["scans"]), std::ssize(document["failures"])};
+  return shown_on_first_page(result.plan.back().job.output);
 }
 
 void print_report(const RunResult& result, const ReportOptions& options) {
   const PageCounts counts = count_pages(result);
-  const ReportJobResult shown = shown_in(result, options.place);
+  const ReportJobResult shown = shown_in(result);
   const fs::path& index = result.plan.back().job.output;
   if (options.execution.json) {
     nlohmann::json document = {{"report", index.string()},

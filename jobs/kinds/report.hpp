@@ -36,6 +36,10 @@ const JobKind& scene_kind();
 /// result a ReportJobResult.
 const JobKind& report_kind();
 
+/// Returns what the first page shows that is there. Reads that page alone. Counts nothing if it is
+/// not there or of another version.
+ReportJobResult shown_on_first_page(const std::filesystem::path& page);
+
 /// Returns the job that makes the page of a scan. `dataset_key` is the key of the job that made its
 /// dataset, or will. `folder` is that of the report.
 Job page_job(const std::string& name, const std::filesystem::path& dataset,

@@ -73,7 +73,8 @@ Matrix3f axes_of(View view, UpAxis up) {
 float aspect_of(const Matrix3f& axes, std::span<const std::span<const float>> surfaces) {
   const Box box = box_of(axes, surfaces);
   const Vector3f size = box.high - box.low;
-  return size.x() > 0 && size.y() > 0 ? size.x() / size.y() : 1.0f;
+  const float aspect = size.x() / size.y();
+  return size.x() > 0 && size.y() > 0 && std::isfinite(aspect) ? aspect : 1.0f;
 }
 
 Camera fitted_camera(const Matrix3f& axes, std::span<const std::span<const float>> surfaces,

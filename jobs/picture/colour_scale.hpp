@@ -25,7 +25,7 @@ inline constexpr Colour kPlainColour = {0.72f, 0.74f, 0.78f};
 
 /// Returns a channel of a colour, between 0 and 1, as a byte of an image.
 inline std::uint8_t channel_byte(float channel) {
-  return static_cast<std::uint8_t>(std::lround(255 * channel));
+  return static_cast<std::uint8_t>(channel > 0 ? std::lround(255 * std::min(channel, 1.0f)) : 0);
 }
 
 /// Returns the colour of a value between -1 and 1. What lies outside has the colour of the end, and

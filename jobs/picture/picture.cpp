@@ -5,9 +5,10 @@
 #include <string>
 
 #include "io/dataset/dataset_header.hpp"
-#include "io/files/error.hpp"
 #include "io/files/printable.hpp"
+#include "jobs/picture/curvature_unit.hpp"
 #include "jobs/picture/legend.hpp"
+#include "jobs/picture/read_triangles.hpp"
 #include "jobs/picture/renderer.hpp"
 #include "jobs/picture/robust_limit.hpp"
 
@@ -34,21 +35,13 @@ struct ShownLevel {
   std::vector<float> completeness;
 };
 
-void check_corners(const io::Dataset& dataset, int level, const ShownLevel& shown) {
-  const auto vertices = static_cast<std::int64_t>(shown.points.size() / 3);
-  for (const std::int64_t corner : shown.triangles)
-    if (corner < 0 || corner >= vertices)
-      throw io::Error(dataset.path(), io::level_path(level) + "/triangles",
-                      "has a corner that is no vertex", "make the dataset again");
-}
-
 ShownLevel read_level(const io::Dataset& dataset, int level, PictureField field) {
   ShownLevel shown = {.points = dataset.read_floats(level, "points"),
                       .normals = dataset.read_floats(level, "normals"),
-                      .triangles = dataset.read_integers(level, "triangles"),
+                      .triangles = {},
                       .values = {},
                       .completeness = {}};
-  check_corners(dataset, level, shown);
+  shown.triangles = read_triangles(dataset, level, shown.points.size() / 3);
   if (field == PictureField::kNone) return shown;
   shown.values = dataset.read_floats(
       level, field == PictureField::kMean ? "mean_curvature" : "gaussian_curvature");
@@ -104,10 +97,9 @@ void place(io::Image& image, const io::Image& panel, int x, int y) {
 /// Adds to the legend what the colours of a field mean.
 void explain_field(Legend& legend, const io::Dataset& dataset, PictureField field) {
   if (field == PictureField::kNone) return;
-  const std::string& unit = dataset.header().length_unit;
   const bool mean = field == PictureField::kMean;
-  const std::string length = unit == "unknown" ? "unit" : io::printable(unit);
-  legend.title = mean ? "H in 1/" + length : "K in 1/" + length + "\u00b2";
+  const CurvatureUnits units = curvature_units(dataset.header().length_unit);
+  legend.title = mean ? "H in " + units.mean : "K in " + units.gaussian;
   legend.upper = mean ? "concave" : "dome or bowl";
   legend.lower = mean ? "convex" : "saddle";
 }
@@ -137,7 +129,7 @@ bool mark_invalid(std::vector<ShownLevel>& levels) {
   bool found = false;
   for (ShownLevel& level : levels)
     for (std::size_t v = 0; v < level.values.size(); ++v)
-      if (level.completeness[v] <= 0) {
+      if (!(level.completeness[v] > 0)) {
         level.values[v] = std::numeric_limits<float>::quiet_NaN();
         found = true;
       }

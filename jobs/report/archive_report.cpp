@@ -5,9 +5,11 @@
 #include <cctype>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "io/dataset/dataset.hpp"
@@ -18,6 +20,7 @@
 #include "jobs/archive/dataset_files.hpp"
 #include "jobs/archive/in_children.hpp"
 #include "jobs/archive/journal.hpp"
+#include "jobs/archive/names.hpp"
 #include "jobs/archive/path_text.hpp"
 #include "jobs/archive/sources.hpp"
 #include "jobs/archive/status.hpp"
@@ -150,25 +153,37 @@ std::string shown_state(const ArchiveStatus& status, const RunHistory& history) 
   return is_at_pages ? "ended" : state_of(status);
 }
 
+/// Returns what tells the names of scans that the archive has or knows.
+auto shown_names(const std::vector<fs::path>& datasets, const Sources& sources) {
+  std::set<std::string> names;
+  for (const fs::path& dataset : datasets) names.insert(dataset.stem().string());
+  for (const auto& [name, source] : sources.by_name()) names.insert(name);
+  return [names = std::move(names)](const std::string& name) { return names.contains(name); };
+}
+
 class ReportReader {
  public:
   ReportReader(const fs::path& archive, const fs::path& folder)
       : archive_(archive),
         folder_(folder),
         status_(status_of(archive)),
-        history_(read_history(archive)),
-        sources_(Sources::read(archive)) {}
+        sources_(Sources::read(archive)),
+        datasets_(dataset_files(archive / "scans")),
+        history_(read_history(archive, shown_names(datasets_, sources_))) {}
 
   nlohmann::json read() {
-    const std::vector<fs::path> datasets = dataset_files(archive_ / "scans");
-    const std::vector<ReadDataset> read = read_datasets(datasets, folder_);
+    const std::vector<ReadDataset> read = read_datasets(datasets_, folder_);
     std::map<std::string, const ReadDataset*> names;
-    for (std::size_t i = 0; i < datasets.size(); ++i) names[datasets[i].stem().string()] = &read[i];
+    for (std::size_t i = 0; i < datasets_.size(); ++i)
+      names[datasets_[i].stem().string()] = &read[i];
     for (const auto& [name, source] : sources_.by_name()) names.try_emplace(name);
     for (const auto& [job, error] : history_.run.failed)
       if (job.starts_with(kSurface)) names.try_emplace(job.substr(kSurface.size()));
     if (names.empty() && !status_.last_run) throw no_archive(archive_);
-    for (const auto& [name, dataset] : names) scans_.push_back(scan(name, dataset));
+    for (const auto& [name, dataset] : names) {
+      scans_.push_back(scan(name, dataset));
+      titles_[name] = scans_.back()["title"];
+    }
     std::ranges::stable_sort(scans_, {}, [](const nlohmann::json& s) { return order_of(s); });
     return {{"archive", escaped(fs::weakly_canonical(archive_).filename().string())},
             {"run", run()},
@@ -210,18 +225,18 @@ class ReportReader {
     return record;
   }
 
-  /// Returns the file name of a scan, or the name of its dataset if the archive does not know it.
+  /// Returns the path of a scan below the folder in which it was found, or the name of its dataset
+  /// if the archive does not know it.
   std::string title_of(const std::string& name) const {
     const auto source = sources_.by_name().find(name);
     if (source == sources_.by_name().end()) return name;
-    return escaped(source->second.filename().string());
+    return escaped(given_name(source->second, name));
   }
 
   /// Returns the title of a scan as the table of scans has it.
   std::string shown_title_of(const std::string& name) const {
-    for (const nlohmann::json& scan : scans_)
-      if (scan["name"] == name) return scan["title"];
-    return title_of(name);
+    const auto title = titles_.find(name);
+    return title == titles_.end() ? title_of(name) : title->second;
   }
 
   void add_state(nlohmann::json& record, const std::string& name, bool has_dataset) const {
@@ -294,9 +309,11 @@ class ReportReader {
   fs::path archive_;
   fs::path folder_;
   ArchiveStatus status_;
-  RunHistory history_;
   Sources sources_;
+  std::vector<fs::path> datasets_;
+  RunHistory history_;
   std::vector<nlohmann::json> scans_;
+  std::map<std::string, std::string> titles_;  ///< Titles of the scans by their names.
 };
 
 /// Returns the key of a page, or an empty text.
@@ -317,10 +334,11 @@ std::vector<std::string> scene_names(const fs::path& archive) {
 }
 
 std::string archive_digest(const fs::path& archive, const fs::path& folder) {
-  const RunHistory history = read_history(archive);
+  const std::vector<fs::path> datasets = dataset_files(archive / "scans");
+  const Sources sources = Sources::read(archive);
+  const RunHistory history = read_history(archive, shown_names(datasets, sources));
   std::string content = history.digest + shown_state(status_of(archive), history);
   const auto add = [&](const std::string& text) { content.append("\n").append(text); };
-  const std::vector<fs::path> datasets = dataset_files(archive / "scans");
   std::error_code ignored;
   if (datasets.empty() && !fs::exists(archive / kJournalName, ignored)) throw no_archive(archive);
   for (const fs::path& dataset : datasets) {
@@ -332,7 +350,6 @@ std::string archive_digest(const fs::path& archive, const fs::path& folder) {
     }
     add(key_of_page(scan_page_path(folder, dataset.stem().string())));
   }
-  const Sources sources = Sources::read(archive);
   for (const auto& [name, source] : sources.by_name()) add(name);
   for (const std::string& name : scene_names(archive)) {
     add(name);

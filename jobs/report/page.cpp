@@ -25,6 +25,23 @@ std::string page_with(const PageTemplate& page, const nlohmann::json& data) {
   return text;
 }
 
+nlohmann::json read_page_data(const std::filesystem::path& page, const PageTemplate& made_of) {
+  try {
+    const io::InputFile file(page);
+    std::string text(static_cast<std::size_t>(file.size()), '\0');
+    text.resize(file.read_at(0, text));
+    const std::size_t before = text.find(made_of.before);
+    if (before == std::string::npos || !text.ends_with(made_of.behind)) return nullptr;
+    const std::size_t begin = before + made_of.before.size();
+    const std::size_t end = text.size() - made_of.behind.size();
+    if (end < begin) return nullptr;
+    return nlohmann::json::parse(text.begin() + static_cast<std::ptrdiff_t>(begin),
+                                 text.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false);
+  } catch (const io::Error&) {
+    return nullptr;
+  }
+}
+
 static constexpr std::string_view kNoIcon = "rel=\"icon\" href=\"data:,\"";
 static constexpr std::string_view kIcon = "rel=\"icon\" href=\"data:image/png;base64,";
 

@@ -13,6 +13,10 @@ namespace semigeo::jobs {
 /// another, because every '<' is escaped. Bytes that are not UTF-8 become U+FFFD.
 std::string page_with(const PageTemplate& page, const nlohmann::json& data);
 
+/// Returns the data of a page that `page_with` made of this template, and perhaps a line before it.
+/// Returns null if the page cannot be read or is of another template.
+nlohmann::json read_page_data(const std::filesystem::path& page, const PageTemplate& made_of);
+
 /// Returns the page with a PNG as its icon.
 std::string with_icon(std::string page, std::string_view png);
 

@@ -13,8 +13,12 @@ namespace {
 
 constexpr std::string_view kSurface = "surface ";
 
+using IsShown = std::function<bool(const std::string& name)>;
+
 class HistoryReader {
  public:
+  explicit HistoryReader(const IsShown& is_shown) : is_shown_(is_shown) {}
+
   void read(const JournalEntry& entry) {
     if (const auto* run = std::get_if<RunStarted>(&entry.event)) {
       next_ = {.started = entry.time, .start = *run};
@@ -32,7 +36,6 @@ class HistoryReader {
 
   RunHistory finish() {
     if (history_.run.made_datasets || history_.night.started.empty()) history_.night = history_.run;
-    history_.digest = io::xxh3_of_text(content_);
     return std::move(history_);
   }
 
@@ -44,10 +47,22 @@ class HistoryReader {
       history_.run = std::move(next_);
       next_name_.clear();
       history_.running.clear();
+      forget_others();
     }
     const auto* job = std::get_if<JobEnded>(&entry.event);
-    content_.append(entry.run).append("\n").append(entry.time).append("\n");
-    if (job != nullptr) content_.append(job->job).append("\n").append(job->state).append("\n");
+    std::string content = history_.digest;
+    content.append("\n").append(entry.run).append("\n").append(entry.time);
+    if (job != nullptr) content.append("\n").append(job->job).append("\n").append(job->state);
+    history_.digest = io::xxh3_of_text(content);
+  }
+
+  /// Forgets scans of earlier runs that are not shown.
+  void forget_others() {
+    for (const std::string& name : others_) {
+      history_.last.erase(name);
+      history_.made.erase(name);
+    }
+    others_.clear();
   }
 
   void end(const JobEnded& job, double now) {
@@ -59,6 +74,7 @@ class HistoryReader {
     if (!job.job.starts_with(kSurface)) return;
     run.made_datasets = true;
     const std::string name = job.job.substr(kSurface.size());
+    if (!is_shown_(name)) others_.push_back(name);
     history_.last[name] = job;
     if (job.state == "done") history_.made[name] = job;
   }
@@ -79,13 +95,14 @@ class HistoryReader {
   RunHistory history_;
   LastRun next_;           ///< A run that has done nothing yet.
   std::string next_name_;  ///< Name of that run.
-  std::string content_;
+  const IsShown& is_shown_;
+  std::vector<std::string> others_;  ///< Names of scans of the last run that are not shown.
 };
 
 }  // namespace
 
-RunHistory read_history(const std::filesystem::path& archive) {
-  HistoryReader reader;
+RunHistory read_history(const std::filesystem::path& archive, const IsShown& is_shown) {
+  HistoryReader reader(is_shown);
   read_journal(
       archive, [&](const JournalEntry& entry) { reader.read(entry); },
       std::numeric_limits<std::int64_t>::max());  // whole, for old scans

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -42,7 +43,13 @@ struct RunHistory {
   std::string digest;  ///< Hash of all that was read: what is shown changes only if it changes.
 };
 
-/// Reads all of the journal of an archive. Throws io::Error if it cannot be read.
-RunHistory read_history(const std::filesystem::path& archive);
+/// Reads all of the journal of an archive. Keeps the last end of each dataset whose name
+/// `is_shown`, and all about the last run, so that the memory does not grow with the journal.
+/// Throws io::Error if the journal cannot be read.
+RunHistory read_history(
+    const std::filesystem::path& archive,
+    const std::function<bool(const std::string& name)>& is_shown = [](const std::string&) {
+      return true;
+    });
 
 }  // namespace semigeo::jobs

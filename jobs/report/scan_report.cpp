@@ -10,6 +10,7 @@
 
 #include "io/dataset/dataset_header.hpp"
 #include "io/files/base64.hpp"
+#include "jobs/picture/curvature_unit.hpp"
 #include "jobs/picture/robust_limit.hpp"
 #include "jobs/report/shown_surface.hpp"
 #include "kernels/surface/vertex_rows.hpp"
@@ -23,6 +24,11 @@ using Eigen::Vector3f;
 /// vertex, two triangles, features and contours; as base64.
 constexpr double kBytesPerVertex = 70;
 
+/// Returns whether a vertex has a valid patch. Damaged datasets may hold NaN.
+bool is_valid(float completeness) {
+  return completeness > 0;
+}
+
 /// Counts the values of valid vertices in equal bins between -limit and limit. The outer bins also
 /// have what lies beyond.
 std::vector<std::int64_t> histogram(const std::vector<float>& values,
@@ -30,7 +36,7 @@ std::vector<std::int64_t> histogram(const std::vector<float>& values,
   constexpr int kBins = 48;
   std::vector<std::int64_t> counts(kBins);
   for (std::size_t v = 0; v < values.size(); ++v) {
-    if (completeness[v] <= 0 || !std::isfinite(values[v])) continue;
+    if (!is_valid(completeness[v]) || !std::isfinite(values[v])) continue;
     const float place = limit > 0 ? (values[v] / limit + 1) / 2 * kBins : kBins * 0.5f;
     ++counts[static_cast<std::size_t>(std::clamp(place, 0.0f, kBins - 1.0f))];
   }
@@ -52,13 +58,13 @@ void add_fields(nlohmann::json& json, const io::Dataset& dataset, int level,
     json["limits"][name] = limit;
     json["histograms"][name] = histogram(values, completeness, limit);
     for (std::size_t v = 0; v < values.size(); ++v)
-      if (completeness[v] <= 0) values[v] = std::numeric_limits<float>::quiet_NaN();
+      if (!is_valid(completeness[v])) values[v] = std::numeric_limits<float>::quiet_NaN();
     json[name] = io::base64_of(shown_values(std::move(values), shown));
   }
-  json["invalid"] = std::ranges::count(completeness, 0.0f);
+  json["invalid"] = std::ranges::count(completeness, false, is_valid);
   std::vector<std::uint8_t> shares;
   for (const float c : shown_values(std::move(completeness), shown))
-    shares.push_back(static_cast<std::uint8_t>(255 * std::clamp(c, 0.0f, 1.0f)));
+    shares.push_back(static_cast<std::uint8_t>(is_valid(c) ? 255 * std::min(c, 1.0f) : 0.0f));
   json["completeness"] = io::base64_of(shares);
 }
 
@@ -151,9 +157,11 @@ nlohmann::json scan_report(const io::Dataset& dataset, const ScanPageLimits& lim
   scales.reserve(static_cast<std::size_t>(dataset.level_count()));
   for (int level = 0; level < dataset.level_count(); ++level)
     scales.push_back(dataset.scale(level));
+  const CurvatureUnits units = curvature_units(header.length_unit);
   return {{"title", header.input_name},
           {"file", dataset.path().filename().string()},
           {"unit", header.length_unit},
+          {"curvature_units", {{"H", units.mean}, {"K", units.gaussian}}},
           {"origin", header.origin},
           {"parameters", header.parameters},
           {"repairs", header.repairs},

@@ -9,7 +9,7 @@
 namespace semigeo::jobs {
 
 /// The version of what a scan's page shows. It is part of the page's key.
-inline constexpr std::string_view kScanPageVersion = "scan page 3";
+inline constexpr std::string_view kScanPageVersion = "scan page 4";
 
 /// Says how much of a dataset a page gets, so that the page stays below 6 MB.
 struct ScanPageLimits {

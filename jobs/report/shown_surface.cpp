@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "io/files/base64.hpp"
-#include "io/files/error.hpp"
+#include "jobs/picture/read_triangles.hpp"
 #include "kernels/repair/coarsening.hpp"
 #include "kernels/repair/decimation.hpp"
 #include "kernels/repair/remeshing.hpp"
@@ -24,17 +24,11 @@ ShownSurface read_shown_surface(const io::Dataset& dataset, int level) {
   const std::vector<float> points = dataset.read_floats(level, "points");
   for (std::size_t i = 0; i < points.size(); i += 3)
     shown.points.emplace_back(points[i], points[i + 1], points[i + 2]);
-  const std::vector<std::int64_t> corners = dataset.read_integers(level, "triangles");
-  const auto vertices = static_cast<std::int64_t>(shown.points.size());
+  const std::vector<std::int64_t> corners = read_triangles(dataset, level, shown.points.size());
   for (std::size_t i = 0; i < corners.size(); i += 3) {
     kernels::Triangle triangle = {};
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const std::int64_t vertex = corners[i + corner];
-      if (vertex < 0 || vertex >= vertices)
-        throw io::Error(dataset.path(), io::level_path(level) + "/triangles",
-                        "has a corner that is no vertex", "make the dataset again");
-      triangle[corner] = static_cast<std::int32_t>(vertex);
-    }
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      triangle[corner] = static_cast<std::int32_t>(corners[i + corner]);
     shown.triangles.push_back(triangle);
   }
   return shown;
@@ -116,12 +110,14 @@ ShownBox box_of(const std::vector<Vector3f>& points) {
 }
 
 std::vector<std::uint16_t> fractions(const std::vector<Vector3f>& points, const ShownBox& box) {
-  constexpr float kMost = std::numeric_limits<std::uint16_t>::max();
+  static constexpr float kMost = std::numeric_limits<std::uint16_t>::max();
   const float scale = box.size > 0 ? kMost / box.size : 0;
+  // The low bound also has what is not a number.
+  const auto bounded = [](float x) { return x > 0 ? std::min(x, kMost) : 0.0f; };
   std::vector<std::uint16_t> result;
   for (const Vector3f& p : points)
     for (const float x : (scale * (p - box.low)).eval())
-      result.push_back(static_cast<std::uint16_t>(std::clamp(x + 0.5f, 0.0f, kMost)));
+      result.push_back(static_cast<std::uint16_t>(bounded(x + 0.5f)));
   return result;
 }
 

@@ -36,7 +36,7 @@ std::string thumbnail_of(const io::Dataset& dataset) {
   const std::array<FieldValues, 1> field = {{{values, completeness}}};
   const float limit = robust_limit(field);
   for (std::size_t v = 0; v < values.size(); ++v)
-    if (completeness[v] <= 0) values[v] = std::numeric_limits<float>::quiet_NaN();
+    if (!(completeness[v] > 0)) values[v] = std::numeric_limits<float>::quiet_NaN();
   const std::array<std::span<const float>, 1> surfaces = {points};
   const Camera camera =
       fitted_camera(axes_of(View::kIso, UpAxis::kY), surfaces, kThumbnailPixels, kThumbnailPixels);

@@ -1,6 +1,8 @@
 #include "jobs/stages/scan_surface.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <utility>
 
 #include "io/files/error.hpp"
@@ -13,10 +15,23 @@ namespace {
 constexpr double kShortestMeanEdge = 1e-12;
 constexpr double kLongestMeanEdge = 1e12;
 
+/// Returns "320 degenerate faces, 162 isolated vertices": the counts that are not 0.
+std::string in_words(const kernels::SurfaceRepairs& repairs) {
+  std::string text;
+  const nlohmann::json counts = json_of(repairs);
+  for (const auto& [name, count] : counts.items()) {
+    if (count == 0) continue;
+    std::string words = name;
+    std::ranges::replace(words, '_', ' ');
+    text += (text.empty() ? "" : ", ") + count.dump() + ' ' + words;
+  }
+  return text;
+}
+
 void check_usable(const std::filesystem::path& scan, const kernels::BuiltSurface& built) {
   if (built.surface.face_count() == 0)
     throw io::Error(scan, "",
-                    "no usable triangle is left after repair (" + to_json(built.repairs) + ")",
+                    "no usable triangle is left after repair (" + in_words(built.repairs) + ")",
                     "check how the scan was exported");
   const double edge = kernels::mean_edge_length(built.surface);
   if (!(edge >= kShortestMeanEdge && edge <= kLongestMeanEdge))

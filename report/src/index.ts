@@ -159,16 +159,17 @@ function showTotals(): void {
   }
 }
 
-/// Failures that have the same reason, but for the name of the file, and the same remedy.
+/// Returns the failures in groups, the largest first. Those of a group have the same remedy, and the
+/// same reason but for numbers and the name of the file.
 function groupsOf(failures: Failure[]): Failure[][] {
   const groups = new Map<string, Failure[]>();
   for (const failure of failures) {
-    const key = `${reasonWithoutFile(failure.job, failure.reason)}\n${failure.remedy ?? ""}`;
+    const key = `${reasonWithoutFile(failure.job, failure.reason).replace(/\d+/g, "#")}\n${failure.remedy ?? ""}`;
     const group = groups.get(key);
     if (group) group.push(failure);
     else groups.set(key, [failure]);
   }
-  return [...groups.values()];
+  return [...groups.values()].sort((a, b) => b.length - a.length);
 }
 
 /// Returns a reason without the file that it begins with, which has this name.
@@ -184,6 +185,10 @@ function textBlock(text: string, className = ""): HTMLParagraphElement {
 }
 
 /// Returns the item of a group, with some or all of its names.
+/// Returns whether failures have the same reason, numbers included.
+const isSame = (group: Failure[]): boolean =>
+  group.every(one => reasonWithoutFile(one.job, one.reason) === reasonWithoutFile(group[0].job, group[0].reason));
+
 function failureItem(group: Failure[]): HTMLLIElement {
   const item = make("li");
   const names = make("p", "", "name");
@@ -198,7 +203,8 @@ function failureItem(group: Failure[]): HTMLLIElement {
   };
   show(namesAtFirst);
   const first = group[0];
-  const reason = group.length === 1 ? first.reason : `${wholeText(group.length)} times: ${reasonWithoutFile(first.job, first.reason)}`;
+  const reason = group.length === 1 ? first.reason
+    : `${wholeText(group.length)} times${isSame(group) ? "" : ", for example"}: ${reasonWithoutFile(first.job, first.reason)}`;
   item.append(names, textBlock(reason));
   if (first.remedy) item.append(textBlock(`What to do: ${first.remedy}`, "remedy"));
   return item;

@@ -35,6 +35,7 @@ interface Scan {
   title: string;
   file: string;
   unit: string;
+  curvature_units: Record<Field, string>;
   origin: number[];
   parameters: Record<string, unknown>;
   repairs: Record<string, number>;
@@ -79,11 +80,8 @@ let fields: Record<Field, Float32Array> = { H: new Float32Array(), K: new Float3
 let completeness: Uint8Array = new Uint8Array();
 let rows: Uint32Array | undefined;
 
-/// Returns a curvature with its unit: of H 1/length, of K 1/length².
-function curvatureText(field: Field, value: number): string {
-  const power = field === "K" ? "²" : "";
-  return realText(value, 3) + (unit ? ` / ${unit}${power}` : ` / length${power}`);
-}
+/// Returns a curvature with its unit: "0.12 1/mm".
+const curvatureText = (field: Field, value: number): string => `${realText(value, 3)} ${scan.curvature_units[field]}`;
 
 const lengthText = (value: number): string => realText(value) + (unit ? ` ${unit}` : "");
 

@@ -81,6 +81,14 @@ class PictureTest(SemigeoTest):
         self.picture("--features", "all")
         self.assertEqual(self.output.read_bytes(), first)
 
+    def test_the_limit_is_a_curvature_that_colours_can_show(self):
+        dataset = self.dataset("a.ply")
+        for limit in ("1e-300", "1e300", "inf", "nan", "-1", "x"):
+            process = self.semigeo("picture", dataset, "--limit", limit, "--output", self.folder / "p.png", code=2)
+            self.assertIn("give a curvature from 1e-30 to 1e30, or 0", process.stderr)
+        for limit in ("1e-30", "1e30", "0"):
+            self.semigeo("picture", dataset, "--limit", limit, "--output", self.folder / "p.png")
+
     def test_levels_stand_beside_each_other_with_one_limit(self):
         one, _ = self.picture("--level", "0")
         strip, printed = self.picture("--levels", "0,1,3")

@@ -163,7 +163,7 @@ const checks = {
     assert.notEqual(await page.textContent("#level-text"), sigma);
     await changes(page, "the level back", () => setLevel(0));
     await changes(page, "K", () => page.check("input[name=field][value=K]"));
-    assert.match(await page.textContent("#high"), /mm²/);
+    assert.match(await page.textContent("#high"), /1\/mm²$/);
     await changes(page, "the palette", () => page.selectOption("#palette", "thesis"));
     await changes(page, "no field", () => page.check("input[name=field][value=none]"));
     for (const box of ["feature-mean", "contour-mean", "contour-gaussian", "wireframe", "rims"]) {
@@ -174,7 +174,7 @@ const checks = {
     // What is under the cursor, by mouse and by keyboard.
     const box = await page.locator("#canvas").boundingBox();
     await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
-    assert.match(await page.textContent("#probe"), /^vertex [\d,]+ of level 0, .*H .* \/ mm/);
+    assert.match(await page.textContent("#probe"), /^vertex [\d,]+ of level 0, .*H .* 1\/mm/);
     await page.mouse.move(box.x + 2, box.y + 2);
     assert.match(await page.textContent("#probe"), /^Point at the surface/);
     await page.focus("#canvas");

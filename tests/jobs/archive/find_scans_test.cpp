@@ -341,5 +341,16 @@ TEST_F(FindScansTest, AnEmptyFolderHoldsNothing) {
   EXPECT_TRUE(find({folder_ / "in"}).empty());
 }
 
+TEST_F(FindScansTest, FilesThatBelongToAScanAreNotPassedOver) {
+  add("in/a.bin");
+  add("in/part/b.bin");
+  add("in/other.bin");
+  std::ofstream(folder_ / "in/a.gltf")
+      << R"({"asset":{"version":"2.0"},"buffers":[{"uri":"a.bin","byteLength":1},)"
+         R"({"uri":"part/b.bin","byteLength":1},{"uri":"gone.bin","byteLength":1}]})";
+  fs::copy_file(folder_ / "in/a.gltf", folder_ / "in/again.gltf");
+  EXPECT_EQ(in_words(find_scans({folder_ / "in"}, folder_ / "archive").passed_over), "1 .bin");
+}
+
 }  // namespace
 }  // namespace semigeo::jobs

@@ -140,5 +140,41 @@ TEST_F(ReportPlanTest, AnArchiveIsNeeded) {
   EXPECT_THROW(plan(), io::Error);
 }
 
+TEST_F(ReportPlanTest, ThePageOfASceneIsMadeAgainWhenTheSceneOrAModelThatItNamesHasChanged) {
+  make_dataset("a", 1);
+  make_dataset("ranked", 1);
+  fs::create_directories(folder_ / "recognised");
+  nlohmann::json document = {{"format", "semigeo-recognition"},
+                             {"format_version", 1},
+                             {"job_key", "k"},
+                             {"objects", nlohmann::json::array()},
+                             {"ranking", {{{"model", "ranked"}}}}};
+  document["digest"] = io::xxh3_of_text(document.dump());
+  std::ofstream(folder_ / "recognised/s.json") << document.dump(2) << '\n';
+  const fs::path scene = tests::write_obj(folder_ / "scene.obj", shapes::icosphere(1));
+  const auto key = [&] { return scene_job("s", scene, folder_.path(), folder_ / "report").key; };
+  const std::string first = key();
+  EXPECT_EQ(key(), first);
+  make_dataset("a", 2);
+  EXPECT_EQ(key(), first) << "the page does not name it";
+  make_dataset("ranked", 2);
+  const std::string second = key();
+  EXPECT_NE(second, first);
+  tests::write_obj(folder_ / "scene.obj", shapes::icosphere(2));
+  const std::string third = key();
+  EXPECT_NE(third, second);
+  fs::remove(scene);
+  EXPECT_NE(key(), third);
+}
+
+TEST_F(ReportPlanTest, WhatTheFirstPageShowsIsReadFromIt) {
+  make_dataset("a", 1);
+  make_dataset("b", 1);
+  run(plan(true));
+  fs::remove_all(folder_ / "scans");
+  EXPECT_EQ(shown_on_first_page(folder_ / "report/index.html").scans, 2);
+  EXPECT_EQ(shown_on_first_page(folder_ / "report/none.html").scans, 0);
+}
+
 }  // namespace
 }  // namespace semigeo::jobs

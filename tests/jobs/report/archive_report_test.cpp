@@ -9,6 +9,7 @@
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
 #include "jobs/archive/journal.hpp"
+#include "jobs/archive/names.hpp"
 #include "jobs/archive/sources.hpp"
 #include "jobs/stages/surface_job.hpp"
 #include "tests/support/scan_file.hpp"
@@ -132,11 +133,11 @@ TEST_F(ArchiveReportTest, ADatasetThatCannotBeReadIsAFailure) {
 TEST_F(ArchiveReportTest, ScansHaveTheirOwnNames) {
   make_dataset("day_a.obj--1", "día/<img>.obj");
   Sources sources;
-  sources.claim("b.obj", "/scans/β.obj");
+  sources.claim(dataset_name("day/β.obj"), "/scans/day/β.obj");
   sources.write(folder_.path());
   const nlohmann::json document = report();
   ASSERT_EQ(document["scans"].size(), 2);
-  EXPECT_EQ(document["scans"][0]["title"], "β.obj");
+  EXPECT_EQ(document["scans"][0]["title"], "day/β.obj");
   EXPECT_EQ(document["scans"][0]["state"], "missing");
   EXPECT_EQ(document["scans"][1]["title"], "día/<img>.obj");
 }

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
+
+#include "tests/support/temporary_folder.hpp"
 
 namespace semigeo::jobs {
 namespace {
@@ -20,6 +23,16 @@ TEST(PageTest, NoTextOfTheDataIsMarkup) {
 
 TEST(PageTest, BytesThatAreNoTextAreReplaced) {
   EXPECT_EQ(page_with({"", ""}, "a\xff z"), "\"a\xef\xbf\xbd z\"");
+}
+
+TEST(PageTest, ItsDataCanBeReadAgain) {
+  const tests::TemporaryFolder folder;
+  const PageTemplate page = {"<a>", "</a>"};
+  const nlohmann::json data = {{"scans", {"</a>", "<a>"}}};
+  std::ofstream(folder / "p.html") << "<!-- a line before it -->\n" << page_with(page, data);
+  EXPECT_EQ(read_page_data(folder / "p.html", page), data);
+  EXPECT_TRUE(read_page_data(folder / "p.html", {"<b>", "</b>"}).is_null());
+  EXPECT_TRUE(read_page_data(folder / "none.html", page).is_null());
 }
 
 }  // namespace

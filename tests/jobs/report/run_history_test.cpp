@@ -90,5 +90,19 @@ TEST(RunFiguresTest, AShortRunHasNoCurve) {
   EXPECT_FALSE(figures_of(run).contains("core_time"));
 }
 
+TEST_F(RunHistoryTest, ScansOfEarlierRunsAreKeptOnlyIfTheyAreShown) {
+  run("one",
+      {{.job = "surface a.ply", .state = "done"}, {.job = "surface b.ply", .state = "done"}});
+  const auto shown = [](const std::string& name) { return name == "a.ply"; };
+  // The last run is kept whole.
+  EXPECT_EQ(read_history(folder_.path(), shown).last.size(), 2u);
+  run("two", {{.job = "surface c.ply", .state = "failed", .error = "no"}});
+  const RunHistory history = read_history(folder_.path(), shown);
+  EXPECT_TRUE(history.last.contains("a.ply"));
+  EXPECT_TRUE(history.last.contains("c.ply"));
+  EXPECT_EQ(history.last.size(), 2u);
+  EXPECT_EQ(history.made.size(), 1u);
+}
+
 }  // namespace
 }  // namespace semigeo::jobs

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
@@ -50,6 +52,15 @@ TEST(ShownSurfaceTest, FractionsKeepProportions) {
   EXPECT_EQ(box.size, 2);
   EXPECT_EQ(fractions(points, box),
             (std::vector<std::uint16_t>{0, 0, 0, 65535, 0, 0, 0, 32768, 0}));
+}
+
+TEST(ShownSurfaceTest, PointsThatAreNoNumbersHaveAFraction) {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kFar = std::numeric_limits<float>::infinity();
+  const ShownBox box = {.low = {0, 0, 0}, .size = 1};
+  EXPECT_EQ(fractions({{kNone, kFar, -kFar}}, box), (std::vector<std::uint16_t>{0, 65535, 0}));
+  EXPECT_EQ(fractions({{1, 2, 3}}, {.low = {0, 0, 0}, .size = kFar}),
+            (std::vector<std::uint16_t>{0, 0, 0}));
 }
 
 }  // namespace
