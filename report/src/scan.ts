@@ -51,11 +51,12 @@ interface Scan {
   levels: Level[];
 }
 
-/// A kind of feature or contour: its words and its colour.
+/// A kind of feature or contour: its words and its colour. A contour is a line and has no mark.
 interface Kind {
   name: string;
   title: string;
   mark: string;
+  dashed?: boolean;
   form: Form;
   colour: string;
 }
@@ -67,8 +68,8 @@ const featureKinds: Kind[] = [
   { name: "mean_torsion", title: "torsion on H = 0", mark: "◆", form: "diamond", colour: "#6a2ee0" },
 ];
 const contourKinds: Kind[] = [
-  { name: "gaussian", title: "K = 0", mark: "━━", form: "circle", colour: "#111111" },
-  { name: "mean", title: "H = 0", mark: "╍╍", form: "circle", colour: "#d01c8b" },
+  { name: "gaussian", title: "K = 0", mark: "", form: "circle", colour: "#111111" },
+  { name: "mean", title: "H = 0", mark: "", dashed: true, form: "circle", colour: "#d01c8b" },
 ];
 
 const chartWidth = 420;
@@ -138,7 +139,7 @@ function showMarks(): void {
   for (const kind of contourKinds) {
     const contours = level.contours[kind.name];
     const lines = checked(`contour-${kind.name}`)
-      ? segmentsOf(pointsOf(contours.points), integers(contours.offsets), kind.name === "mean") : undefined;
+      ? segmentsOf(pointsOf(contours.points), integers(contours.offsets), kind.dashed ?? false) : undefined;
     view.setLines(`contour ${kind.name}`, lines, kind.colour);
   }
   view.setWireframe(checked("wireframe"), "#222222");
@@ -244,8 +245,10 @@ function addChoices(kinds: Kind[], group: string, into: string): void {
     box.type = "checkbox";
     box.id = `${group}-${kind.name}`;
     box.addEventListener("change", showMarks);
-    const mark = make("span", kind.mark, "mark");
+    const mark = make("span", kind.mark, kind.mark ? "mark" : "line-mark");
     mark.style.color = kind.colour;
+    mark.style.setProperty("--line-colour", kind.colour);
+    if (kind.dashed) mark.style.setProperty("--dash", "0.35rem");
     mark.setAttribute("aria-hidden", "true");
     const count = make("span");
     count.id = `count-${group}-${kind.name}`;

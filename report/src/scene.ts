@@ -199,7 +199,10 @@ function addShapes(): void {
     label.append(box, " ", mark, ` ${place + 1}. `, name);
     element("shapes").append(label);
   });
-  if (scene.objects.length === 0) element("shapes").append(make("p", "none was found"));
+  if (scene.objects.length > 0) return;
+  element("shapes").append(make("p", "none was found"));
+  element<HTMLInputElement>("plain").checked = true;
+  for (const id of ["distance-label", "opacity-label", "edges-label"]) element(id).hidden = true;
 }
 
 /// Returns a matrix for people: fewer digits, in columns.
@@ -296,7 +299,7 @@ function showRanking(): void {
     element("ranking").append(row);
   });
   element("ranking-note").textContent = scene.ranking.length === 0 ? "Nothing agrees with any model."
-    : `★ is in the scene: its score reaches ${realText(scene.search.min_score)}. ` +
+    : `★ is in the scene: its score reaches ${realText(scene.search.min_score)}, and no better model has its place. ` +
       `${wholeText(scene.ranking.length)} of ${wholeText(scene.models_ranked)} models that were looked at closely.`;
 }
 
@@ -306,12 +309,21 @@ function verdict(): string {
   return scene.scene.features === 0 ? "no features: nothing can be recognised" : "no model of the library is in this scene";
 }
 
+/// Says that nothing was found, and how near the best candidate came.
+function failedVerdict(): string {
+  const text = verdict();
+  const best = scene.ranking[0];
+  const nearest = best === undefined ? "" : ` The best candidate is ${titleOf(best)}: its score is ${realText(best.score, 3)}, ` +
+    `and ${realText(scene.search.min_score)} is needed.`;
+  return `${text[0].toUpperCase()}${text.slice(1)}.${nearest}`;
+}
+
 function showData(): void {
   document.title = `${scene.title} – semigeo report`;
   element("title").textContent = scene.title;
   element("verdict").textContent = verdict();
   element("object-list").append(...scene.objects.map(objectCard));
-  if (scene.objects.length === 0) element("object-list").append(make("p", `${verdict()}.`));
+  if (scene.objects.length === 0) element("object-list").append(make("p", failedVerdict()));
   showPairs("scene", Object.entries(scene.scene).filter(([name]) => name !== "repairs")
     .map(([name, value]) => [name.replaceAll("_", " "), typeof value === "number" ? wholeText(value) : valueText(value)]));
   const repairs = Object.fromEntries(Object.entries(scene.scene.repairs ?? {}).filter(([, count]) => count !== 0));
