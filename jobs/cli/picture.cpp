@@ -51,6 +51,10 @@ int make_picture(PictureCommand& command) {
     throw CLI::ValidationError("--output", command.output +
                                                " does not say how to write it: give a name that "
                                                "ends in .png");
+  if (std::error_code ignored; std::filesystem::is_directory(command.dataset, ignored))
+    throw io::Error(command.dataset, "", "is a folder, not a dataset",
+                    "give one dataset: " +
+                        (std::filesystem::path(command.dataset) / "scans/NAME.vtkhdf").string());
   PictureOptions& options = command.picture;
   const io::Dataset dataset(command.dataset);
   if (options.levels.empty()) options.levels = {static_cast<int>(dataset.selection().level)};

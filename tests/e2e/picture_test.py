@@ -81,6 +81,10 @@ class PictureTest(SemigeoTest):
         self.picture("--features", "all")
         self.assertEqual(self.output.read_bytes(), first)
 
+    def test_a_folder_is_no_dataset(self):
+        process = self.semigeo("picture", self.archive, "--output", self.output, code=1)
+        self.assertIn("is a folder, not a dataset; give one dataset: ", process.stderr)
+
     def test_the_limit_is_a_curvature_that_colours_can_show(self):
         dataset = self.dataset("a.ply")
         for limit in ("1e-300", "1e300", "inf", "nan", "-1", "x"):
