@@ -138,7 +138,8 @@ void mark_rim(std::span<const Vector3f> points, Triangles triangles, SurfaceSamp
   SurfaceSamples boundary;
   for (const auto& [a, b] : edges) {
     const float length = (points[b] - points[a]).norm();
-    const int steps = std::clamp(static_cast<int>(std::ceil(length / samples.spacing)), 1, 1000);
+    const int steps =
+        static_cast<int>(std::fmin(std::fmax(std::ceil(length / samples.spacing), 1), 1000));
     for (int i = 0; i < steps; ++i)
       boundary.points.push_back(points[a] + (static_cast<float>(i) + 0.5F) /
                                                 static_cast<float>(steps) *

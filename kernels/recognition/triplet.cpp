@@ -64,7 +64,7 @@ std::uint8_t curvature_byte(float q) {
 }
 
 int bin(float value, float least, float width, int bins) {
-  return std::clamp(static_cast<int>((value - least) / width), 0, bins - 1);
+  return static_cast<int>(std::clamp((value - least) / width, 0.0F, static_cast<float>(bins - 1)));
 }
 
 /// Returns a normal in the frame of its triangle. The axes are the triangle's normal, the longest

@@ -82,8 +82,11 @@ class MiddleGrid {
 
  private:
   Cell cell_of(const Eigen::Vector3d& p) const {
+    constexpr double kFarthest = 1e18;  // beyond it all cells are one: they must fit into 64 bits
     Cell cell{};
-    for (int c = 0; c < 3; ++c) cell[c] = static_cast<std::int64_t>(std::floor(p[c] / size_));
+    for (int c = 0; c < 3; ++c)
+      cell[c] =
+          static_cast<std::int64_t>(std::clamp(std::floor(p[c] / size_), -kFarthest, kFarthest));
     return cell;
   }
 

@@ -432,5 +432,16 @@ TEST(SurfaceBuilderTest, NothingLeftIsAnEmptySurface) {
   EXPECT_EQ(built.repairs.isolated_vertices, 2);
 }
 
+/// Cells of the gap's width that are counted from the origin do not fit into 64 bits.
+TEST(SurfaceBuilderTest, GapsMayBeAsNarrowAsNothingBesideTheSurface) {
+  const TriangleMesh far = {.points = {{0, 0, 0}, {1e25, 0, 0}, {0, 1e25, 0}, {1e25, 1e25, 1}},
+                            .triangles = {{0, 1, 2}, {1, 3, 2}}};
+  for (const double distance : {1e-3, 1e-300}) {
+    const BuiltSurface built = build_surface(TriangleMesh(far), {.distance = distance});
+    EXPECT_EQ(built.surface.face_count(), 2);
+    EXPECT_EQ(built.repairs.gap_vertices, 0);
+  }
+}
+
 }  // namespace
 }  // namespace semigeo::kernels
