@@ -66,11 +66,13 @@ Hdf5File::Array open_rows(const Hdf5File& file, const std::string& path, Element
   return array;
 }
 
-/// Returns the parameters. A text that is no JSON object becomes a string, which no program knows
+/// Returns the parameters. A text that is not JSON becomes a string, which no program knows
 /// as parameters.
 nlohmann::json parameters_in(const Hdf5File& file) {
   auto text = file.read_attribute_as<std::string>("/", "parameters");
-  auto parameters = parse_json(text, {});
+  auto parameters = parse_json(text, {});  // an object whose brackets are not deep in each other
+  if (text.find_first_of("{[") == std::string::npos)
+    parameters = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
   return parameters.is_discarded() ? nlohmann::json(std::move(text)) : parameters;
 }
 
