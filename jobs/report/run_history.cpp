@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 #include "io/files/file_digest.hpp"
 #include "jobs/archive/utc_time.hpp"
@@ -28,13 +29,17 @@ class HistoryReader {
       take(entry);
       history_.running.insert(begun->job);
     } else if (const auto* job = std::get_if<JobEnded>(&entry.event)) {
-      if (makes_page(job->job) && job->state != "failed") return;
+      if (makes_page(job->job) && job->state != "failed") {
+        add_page(entry, *job);
+        return;
+      }
       take(entry);
       end(*job, seconds_between(history_.run.started, entry.time));
     }
   }
 
   RunHistory finish() {
+    for (LastRun* run : {&history_.run, &history_.night}) clip(*run);
     if (history_.run.made_datasets || history_.night.started.empty()) history_.night = history_.run;
     return std::move(history_);
   }
@@ -45,7 +50,7 @@ class HistoryReader {
     if (entry.run == next_name_) {
       if (history_.run.made_datasets) history_.night = std::move(history_.run);
       history_.run = std::move(next_);
-      next_name_.clear();
+      run_name_ = std::exchange(next_name_, "");
       history_.running.clear();
       forget_others();
     }
@@ -54,6 +59,23 @@ class HistoryReader {
     content.append("\n").append(entry.run).append("\n").append(entry.time);
     if (job != nullptr) content.append("\n").append(job->job).append("\n").append(job->state);
     history_.digest = io::xxh3_of_text(content);
+  }
+
+  /// Cuts off what pages took after all other jobs had ended.
+  static void clip(LastRun& run) {
+    std::erase_if(run.spans, [&](const RunSpan& span) { return span.begin >= run.seconds; });
+    for (RunSpan& span : run.spans) span.end = std::min(span.end, run.seconds);
+  }
+
+  /// Adds the time of a page to that of its run, because it had a core. The first page, which ends
+  /// last, is left out.
+  void add_page(const JournalEntry& entry, const JobEnded& job) {
+    if (job.job.starts_with(kReportKind)) return;
+    const bool is_new = entry.run == next_name_;
+    if (!is_new && entry.run != run_name_) return;
+    LastRun& run = is_new ? next_ : history_.run;
+    run.cpu_seconds += job.cpu_seconds;
+    add_core_time(run, job, seconds_between(run.started, entry.time));
   }
 
   /// Forgets scans of earlier runs that are not shown.
@@ -84,6 +106,10 @@ class HistoryReader {
     run.cpu_seconds += job.cpu_seconds;
     run.peak_bytes = std::max(run.peak_bytes, job.peak_bytes);
     run.seconds = std::max({run.seconds, now, job.seconds});
+    add_core_time(run, job, now);
+  }
+
+  static void add_core_time(LastRun& run, const JobEnded& job, double now) {
     if (job.seconds <= 0) return;
     const double size = static_cast<double>(job.vertices) * static_cast<double>(job.levels);
     run.spans.push_back({.begin = std::max(0.0, now - job.seconds),
@@ -95,6 +121,7 @@ class HistoryReader {
   RunHistory history_;
   LastRun next_;           ///< A run that has done nothing yet.
   std::string next_name_;  ///< Name of that run.
+  std::string run_name_;   ///< Name of the last run that has done something.
   const IsShown& is_shown_;
   std::vector<std::string> others_;  ///< Names of scans of the last run that are not shown.
 };

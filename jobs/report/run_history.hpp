@@ -28,12 +28,13 @@ struct LastRun {
   double peak_bytes = 0;   ///< Of the job that took most memory.
   std::map<std::string, std::int64_t> ended = {};  ///< Number of jobs by their state.
   std::map<std::string, std::string> failed = {};  ///< Reason, by name of the job.
-  std::vector<RunSpan> spans = {};                 ///< Jobs that are done or have failed.
-  bool made_datasets = false;                      ///< It has done or tried surface jobs.
+  std::vector<RunSpan> spans = {};  ///< Jobs that are done or have failed, and pages.
+  bool made_datasets = false;       ///< It has done or tried surface jobs.
 };
 
 /// The journal as a report shows it. Jobs that make pages are left out, unless they have failed, so
-/// that a report does not change itself.
+/// that a report does not change itself. The cores that pages of scans and scenes had during a run
+/// count.
 struct RunHistory {
   std::map<std::string, JobEnded> last;  ///< The last end, by name of the dataset.
   std::map<std::string, JobEnded> made;  ///< The last end with a dataset, by its name.

@@ -321,6 +321,7 @@ function cellOf(column: Column, scan: Scan): HTMLTableCellElement {
     cell.append(pictureOf(scan));
   } else {
     cell.textContent = column.text(scan);
+    if (cell.textContent === none) cell.classList.add("empty");
     cell.dataset.title = column.title;
   }
   if (column.className === "state") cell.classList.add(scan.state);

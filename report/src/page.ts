@@ -66,6 +66,7 @@ export function shortText(value: number): string {
 }
 
 export function secondsText(seconds: number): string {
+  if (seconds < 1) return `${realText(seconds, 1)} s`;
   if (seconds < 10) return `${seconds.toFixed(1)} s`;
   if (seconds < 60) return `${Math.round(seconds)} s`;
   const minutes = Math.round(seconds / 60);

@@ -73,6 +73,19 @@ TEST(RunFiguresTest, CoreTimeAndThroughputAddUp) {
   EXPECT_EQ(figures["passed_over"], "2 .jpg");
 }
 
+TEST_F(RunHistoryTest, CoresThatPagesHadDuringARunCount) {
+  run("one", {{.job = "page a.ply", .state = "done", .seconds = 3, .cpu_seconds = 2, .threads = 1},
+              {.job = "surface b.ply", .state = "done", .seconds = 5, .threads = 1},
+              {.job = "scene s.ply", .state = "done", .seconds = 1, .threads = 1},
+              {.job = "report index.html", .state = "done", .seconds = 1, .threads = 1}});
+  run("two", {{.job = "page c.ply", .state = "done", .seconds = 3, .threads = 1}});
+  const LastRun last = read().run;
+  EXPECT_EQ(last.spans.size(), 3u);
+  EXPECT_EQ(last.cpu_seconds, 2);
+  EXPECT_EQ(last.seconds, 5);
+  EXPECT_EQ(last.ended.at("done"), 1);
+}
+
 TEST(RunFiguresTest, ACurveOfAnyLengthHasFewSteps) {
   for (const double seconds : {1e3, 1e10, 1e300}) {
     LastRun run;
