@@ -106,7 +106,7 @@ const columns: Column[] = [
   { title: "Unit", explanation: "Unit of length", numeric: false, value: s => s.unit, text: s => s.unit ?? none },
   numeric("Vertices", "Vertices of level 0", s => s.vertices),
   numeric("Parts", "Connected parts of level 0", s => s.parts),
-  { title: "Repairs", explanation: "What was repaired or left out, or why there is nothing; sorted by the number of repairs", numeric: false,
+  { title: "Repairs, reason", explanation: "What was repaired or left out, or why there is nothing; sorted by the number of repairs", numeric: false,
     value: s => s.repairs && Object.values(s.repairs).reduce((sum, count) => sum + count, 0),
     text: s => s.repairs ? countsText(s.repairs) || "none" : s.reason ? reasonWithoutFile(s.title, s.reason) : none,
     className: "repairs" },
@@ -231,7 +231,7 @@ function showFailures(): void {
 /// Names what bounded a run, by what its cores did.
 function boundText(time: NonNullable<Run["core_time"]>): string {
   const percent = (share: number): string => `${Math.round(100 * share)} %`;
-  if (time.computing >= 0.7) return `The cores bounded this run: they computed for ${percent(time.computing)} of the time.`;
+  if (time.computing >= 0.5) return `The cores bounded this run: they computed for ${percent(time.computing)} of the time.`;
   const most = Math.max(time.waiting, time.held, time.tail);
   if (most === time.waiting)
     return `The disk or other programs bounded this run: jobs had cores, but waited for ${percent(most)} of the time.`;
@@ -322,14 +322,17 @@ function cellOf(column: Column, scan: Scan): HTMLTableCellElement {
   } else {
     cell.textContent = column.text(scan);
     if (cell.textContent === none) cell.classList.add("empty");
-    cell.dataset.title = column.title;
+    cell.dataset.title = column.className === "repairs" ? hasNoDataset(scan) ? "Reason" : "Repairs" : column.title;
   }
   if (column.className === "state") cell.classList.add(scan.state);
   return cell;
 }
 
+/// Returns whether there is nothing to say about a scan but its state and the reason.
+const hasNoDataset = (scan: Scan): boolean => scan.vertices === undefined;
+
 function rowOf(scan: Scan): HTMLTableRowElement {
-  const row = make("tr");
+  const row = make("tr", "", hasNoDataset(scan) ? "lacking" : "");
   row.setAttribute("role", "row");
   row.append(...columns.map(column => cellOf(column, scan)));
   return row;
