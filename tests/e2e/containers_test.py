@@ -86,6 +86,14 @@ class ContainersTest(SemigeoTest):
         # Nothing was written outside of the archive.
         self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["archive", "scans"])
 
+    def test_formats_names_all_containers(self):
+        containers = json.loads(self.semigeo("formats", "--json").stdout)["containers"]
+        self.assertEqual(sorted(containers), sorted([".zip", ".7z", ".tar", ".tgz", ".tbz2", ".txz", ".tzst", ".tar.gz",
+                                                     ".tar.bz2", ".tar.xz", ".tar.zst"]))
+        said = self.semigeo("formats").stdout
+        for extension in containers:
+            self.assertIn(extension, said)
+
     def test_commands_go_through_containers(self):
         box = self.scans / "box.zip"
         with zipfile.ZipFile(box, "w") as file:

@@ -176,5 +176,16 @@ TEST_F(ReportPlanTest, WhatTheFirstPageShowsIsReadFromIt) {
   EXPECT_EQ(shown_on_first_page(folder_ / "report/none.html").scans, 0);
 }
 
+TEST_F(ReportPlanTest, APageIsExpectedToNeedMoreMemoryIfItsDatasetIsLarger) {
+  make_dataset("a", 1);
+  const std::vector<PlannedJob> planned = plan();
+  const Estimates learned;
+  const EstimateContext context = {.plan = planned, .learned = learned, .memory_bytes = 0};
+  const auto bytes = [&] { return page_kind().estimate(planned.front(), context).peak_bytes; };
+  EXPECT_LT(bytes(), 50e6);
+  fs::resize_file(folder_ / "scans/a.vtkhdf", 1'000'000'000);  // sparse
+  EXPECT_GT(bytes(), 2e9);
+}
+
 }  // namespace
 }  // namespace semigeo::jobs

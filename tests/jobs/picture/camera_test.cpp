@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <array>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace semigeo::jobs {
@@ -53,6 +55,12 @@ TEST(CameraTest, ASinglePointIsInTheMiddle) {
   const std::vector<std::span<const float>> surfaces = {point};
   const Camera camera = fitted_camera(axes_of(View::kIso, UpAxis::kY), surfaces, 10, 10);
   EXPECT_LT(camera.place({1, 2, 3}).norm(), 1e-3f);
+}
+
+TEST(CameraTest, ASurfaceBeyondSinglePrecisionHasAFiniteAspect) {
+  const std::vector<float> points = {-3e38f, -3e38f, 0, 3e38f, 3e38f, 0};
+  const std::array<std::span<const float>, 1> surfaces = {points};
+  EXPECT_EQ(aspect_of(axes_of(View::kFront, UpAxis::kY), surfaces), 1.0f);
 }
 
 }  // namespace

@@ -55,5 +55,12 @@ TEST(ColourScaleTest, PagesOfTheReportHaveTheSameColours) {
             std::vector<float>(kPlainColour.begin(), kPlainColour.end()));
 }
 
+TEST(ColourScaleTest, EveryChannelHasAByte) {
+  EXPECT_EQ(channel_byte(0.5f), 128);
+  EXPECT_EQ(channel_byte(2), 255);
+  EXPECT_EQ(channel_byte(-1), 0);
+  EXPECT_EQ(channel_byte(std::numeric_limits<float>::quiet_NaN()), 0);
+}
+
 }  // namespace
 }  // namespace semigeo::jobs
