@@ -145,11 +145,6 @@ std::int64_t PlyElement::least_bytes(bool ascii) const {
   return bytes;
 }
 
-bool PlyElement::has_lists() const {
-  return std::any_of(properties.begin(), properties.end(),
-                     [](const PlyProperty& property) { return property.count_type.has_value(); });
-}
-
 PlyHeader read_ply_header(ByteSource& source) {
   TextScanner scanner(source);
   // `peek` is not used, because the first word of another binary file may have any length.

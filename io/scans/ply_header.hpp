@@ -47,8 +47,6 @@ struct PlyElement {
   /// Returns the number of bytes that a record has at least: exactly its size in binary files if it
   /// holds no list.
   std::int64_t least_bytes(bool ascii) const;
-  /// Returns whether a property is a list.
-  bool has_lists() const;
 };
 
 /// Holds the header of a PLY.

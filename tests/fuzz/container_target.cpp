@@ -52,7 +52,7 @@ void read_members(const std::filesystem::path& path) {
 void read_first_scan(const std::filesystem::path& path, const io::ContainerListing& listing) {
   const auto scan = std::ranges::find_if(
       listing.members, [](const io::Member& member) { return io::is_scan_name(member.name); });
-  if (scan != listing.members.end()) io::read_scan(path / scan->name);
+  io::read_scan(path / (scan == listing.members.end() ? "none.ply" : scan->name));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "io/files/error.hpp"
+#include "io/scans/companions.hpp"
 #include "io/scans/scan_formats.hpp"
 #include "tests/fuzz/target.hpp"
 
@@ -24,9 +25,12 @@ void check_mesh(const io::Scan& scan) {
 }  // namespace
 
 void read_input(std::string_view bytes) {
+  // Formats whose files need others find one.
+  static const std::filesystem::path beside = write("beside.bin", std::string(62, '\1'));
   const std::filesystem::path path = write(kName, bytes);
   check(!io::scan_format_of(path)->variant(bytes.substr(0, 1024)).empty(), "there is no variant");
   try {
+    if (io::may_have_companions(path)) io::bytes_of_scan(path);
     check_mesh(io::read_scan(path));
   } catch (const io::Error& error) {
     check(error.file() == path, "an error names another file");

@@ -85,5 +85,27 @@ TEST_F(TripletsJobTest, RefusesWhatIsNoDataset) {
   EXPECT_FALSE(fs::exists(job_.output));
 }
 
+/// A float holds a corner so far out, but not the square of its distance.
+TEST_F(TripletsJobTest, AScanWithACornerFarOutIsRefusedInASentence) {
+  kernels::TriangleMesh torus = shapes::torus(1, 0.4, 60, 24, 0.3);
+  shapes::add_noise(torus, 0.02, 1);
+  torus.points[0] = {1e25, 0, 0};
+  SurfaceJob job;
+  job.input = tests::write_obj(folder_ / "far.obj", torus);
+  job.name = "far";
+  job.output = folder_ / "far.vtkhdf";
+  job.input_xxh3 = io::xxh3_of_file(job.input);
+  job.key = "k";
+  run_surface_job(job, {.levels = 2}, {workers_, observer_, {}});
+  job_.dataset = job.output;
+  try {
+    run_triplets_job(job_, {}, {workers_, observer_, {}});
+    ADD_FAILURE() << "a model was made";
+  } catch (const io::Error& error) {
+    EXPECT_EQ(error.file(), job.output);
+    EXPECT_NE(error.problem().find("not finite"), std::string::npos) << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace semigeo::jobs
