@@ -15,6 +15,7 @@ void add_job(CLI::App& app, int& exit_code);
 void add_status(CLI::App& app, int& exit_code);
 void add_library(CLI::App& app, int& exit_code);
 void add_recognise(CLI::App& app, int& exit_code);
+void add_similar(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_prune(CLI::App& app, int& exit_code);

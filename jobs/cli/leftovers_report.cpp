@@ -8,15 +8,8 @@
 #include "jobs/cli/output.hpp"
 
 namespace semigeo::jobs::cli {
-namespace {
 
 namespace fs = std::filesystem;
-
-std::string counted(std::ptrdiff_t count, std::string_view one) {
-  return std::to_string(count) + ' ' + std::string(one) + (count == 1 ? "" : "s");
-}
-
-}  // namespace
 
 std::string counts_in_words(const std::vector<Leftover>& leftovers) {
   const auto datasets = std::ranges::count(leftovers, Leftover::Kind::kDataset, &Leftover::kind);
@@ -49,7 +42,7 @@ std::string reason_to_ask(const Leftovers& leftovers) {
   if (leftovers.emptied.empty()) return "";
   const std::size_t more = leftovers.emptied.size() - 1;
   return leftovers.emptied.front().string() +
-         (more == 0 ? "" : " and " + counted(static_cast<std::ptrdiff_t>(more), "other folder")) +
+         (more == 0 ? "" : " and " + counted(more, "other folder")) +
          ": all scans that were recorded there are gone, so nothing is removed; see that the disk "
          "is mounted, or give --force if they are gone for good";
 }

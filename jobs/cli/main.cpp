@@ -74,6 +74,7 @@ int run(int argc, char** argv) {
   add_status(app, exit_code);
   add_library(app, exit_code);
   add_recognise(app, exit_code);
+  add_similar(app, exit_code);
   add_info(app, exit_code);
   add_check(app, exit_code);
   add_prune(app, exit_code);

@@ -35,6 +35,10 @@ std::string shell_word(const std::string& text) {
   return word + '\'';
 }
 
+std::string counted(std::size_t count, std::string_view one) {
+  return std::to_string(count) + " " + std::string(one) + (count == 1 ? "" : "s");
+}
+
 std::string padded(std::string text, std::size_t width) {
   const std::string behind = spaces(text, width);
   return text += behind;

@@ -68,6 +68,9 @@ void complain(const Parts&... parts) {
 /// Returns a word, such as a path, as a shell takes it: in quotes if need be.
 std::string shell_word(const std::string& text);
 
+/// Returns a number of things in words: "1 scan", "2 scans". `one` is the word for one of them.
+std::string counted(std::size_t count, std::string_view one);
+
 /// Returns the text with spaces behind it, so that it has at least `width` characters.
 std::string padded(std::string text, std::size_t width);
 

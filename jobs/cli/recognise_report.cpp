@@ -24,10 +24,6 @@ bool has_file(const JobOutcome& outcome) {
   return is_made(outcome.state);
 }
 
-std::string counted(std::size_t count, const char* one, const char* more) {
-  return std::to_string(count) + " " + (count == 1 ? one : more);
-}
-
 double number(const json& object, const char* name) {
   return object.at(name).get<double>();
 }
@@ -87,7 +83,7 @@ void print_pose(const json& pose) {
 
 std::string verdict(const json& document) {
   const json& objects = document.at("objects");
-  if (!objects.empty()) return counted(objects.size(), "object", "objects");
+  if (!objects.empty()) return counted(objects.size(), "object");
   if (document.at("scene").at("features") == 0) return "no features: nothing can be recognised";
   std::string text = "no model of the library is in this scene";
   const std::string least = io::number_text(number(document.at("search"), "min_score"));
@@ -143,8 +139,8 @@ void print_recognised(const RunResult& result, const SearchedLibrary& library,
   print_stop(result, report.failures_were_told);
   print_passed_over(report.passed_over);
   const auto done = static_cast<std::size_t>(std::ranges::count_if(outcomes, has_file));
-  print(counted(plan.size(), "scene", "scenes"), ", ", counted(library.models, "model", "models"),
-        ": ", found, " with objects, ", done - found, " without, ", summary.failed, " failed",
+  print(counted(plan.size(), "scene"), ", ", counted(library.models, "model"), ": ", found,
+        " with objects, ", done - found, " without, ", summary.failed, " failed",
         summary.not_run > 0 ? ", " + std::to_string(summary.not_run) + " not run" : "", "; ",
         short_duration(summary.wall_seconds), " wall, ", short_duration(summary.cpu_seconds),
         " CPU, ", io::fixed_text(summary.peak_bytes / 1e6, 0), " MB peak\n");

@@ -12,6 +12,7 @@
 #include "io/scans/scan_reader.hpp"
 #include "jobs/stages/recognised_file.hpp"
 #include "jobs/stages/recognition_features.hpp"
+#include "jobs/stages/resemblance.hpp"
 #include "jobs/stages/scan_surface.hpp"
 #include "jobs/stages/thesis_recognition.hpp"
 #include "kernels/recognition/single_view.hpp"
@@ -39,6 +40,7 @@ kernels::RecognitionModel read_scene(const RecogniseJob& job,
   const io::Dataset dataset(job.scene);
   const io::LevelInfo level = dataset.level(0);
   scene.format = "dataset";
+  scene.dataset_digest = dataset.digest();
   scene.vertices = level.vertices;
   scene.triangles = level.triangles;
   kernels::RecognitionModel model =
@@ -123,6 +125,7 @@ RecogniseJobResult run_recognise_job(const RecogniseJob& job, const SearchParame
       scene.eye = eye_in_file(model);
     }
   }
+  if (parameters.resemblance) recognition.resemblance = resemblances(library, model, context);
   write_recognised(job.output, job.key, scene, library, parameters, recognition);
   return {.features = scene.features,
           .triplets = recognition.scene_triplets,

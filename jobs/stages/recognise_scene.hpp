@@ -57,6 +57,8 @@ struct Recognition {
   std::vector<Candidate> objects;   ///< What is in the scene, in the order in which it was found.
   std::int64_t scene_triplets = 0;  ///< Number of triplets of the scene.
   std::int64_t matches = 0;         ///< Number of matches of triplets.
+  /// How much each model resembles the scene as a whole, if that is asked for: `resemblances`.
+  std::vector<double> resemblance = {};
 };
 
 /// Finds models of a library in a scene. The result does not depend on the number of threads.

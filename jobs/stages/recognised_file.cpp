@@ -1,8 +1,10 @@
 #include "jobs/stages/recognised_file.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <numeric>
 #include <span>
 
 #include "io/files/atomic_file.hpp"
@@ -72,6 +74,28 @@ json candidates_json(std::span<const Candidate> candidates, const io::HashLibrar
   return list;
 }
 
+/// Returns the models that resemble the scene most as a whole, and all of the ranking, the most
+/// alike first.
+json resemblance_json(const Recognition& recognition, std::size_t ranked,
+                      const io::HashLibrary& library) {
+  const std::vector<double>& whole = recognition.resemblance;
+  std::vector<std::size_t> order(whole.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t i) { return whole[i]; });
+  std::vector<std::uint8_t> is_ranked(whole.size());
+  for (const Candidate& candidate : std::span(recognition.ranking).first(ranked))
+    is_ranked[static_cast<std::size_t>(candidate.model)] = 1;
+  json list = json::array();
+  for (std::size_t place = 0; place < order.size(); ++place) {
+    const std::size_t i = order[place];
+    if (place >= kMostResembling && is_ranked[i] == 0) continue;
+    const io::ModelInfo& model = library.models()[i];
+    list.push_back(
+        {{"model", io::as_utf8(model.name)}, {"model_digest", model.digest}, {"whole", whole[i]}});
+  }
+  return list;
+}
+
 json scene_json(const RecognisedScene& scene) {
   json document = {{"name", io::as_utf8(scene.name)},
                    {"input_name", scene.input_name},
@@ -100,7 +124,7 @@ std::string digest_of(const json& document) {
 void write_recognised(const std::filesystem::path& path, const std::string& key,
                       const RecognisedScene& scene, const io::HashLibrary& library,
                       const SearchParameters& parameters, const Recognition& recognition) {
-  const std::span ranking(recognition.ranking);
+  const std::size_t ranked = std::min(recognition.ranking.size(), kMostRanked);
   json document = {
       {"format", kFormat},
       {"format_version", kFormatVersion},
@@ -113,9 +137,13 @@ void write_recognised(const std::filesystem::path& path, const std::string& key,
       {"search", json_of(parameters)},
       {"scene_triplets", recognition.scene_triplets},
       {"matches", recognition.matches},
-      {"models_ranked", ranking.size()},
+      {"models_ranked", recognition.ranking.size()},
       {"objects", candidates_json(recognition.objects, library)},
-      {"ranking", candidates_json(ranking.first(std::min(ranking.size(), kMostRanked)), library)}};
+      {"ranking", candidates_json(std::span(recognition.ranking).first(ranked), library)}};
+  if (parameters.resemblance) {
+    document["resemblance"] = resemblance_json(recognition, ranked, library);
+    if (!scene.dataset_digest.empty()) document["scene"]["dataset_digest"] = scene.dataset_digest;
+  }
   document["digest"] = digest_of(document);
   io::write_file_atomically(path, text_of(document));
 }

@@ -28,6 +28,7 @@ struct RecognisedScene {
   std::int64_t triangles = 0;
   std::int64_t features = 0;
   std::int64_t samples = 0;
+  std::string dataset_digest = {};  ///< Content digest of the scene; empty if it is no dataset.
   bool turned = false;  ///< Objects were found only with its triangles facing the other way.
   /// The place that it was scanned from, in coordinates of the file, if it is taken to be one.
   std::optional<Eigen::Vector3d> eye = {};
@@ -35,6 +36,9 @@ struct RecognisedScene {
 
 /// The largest number of models in the ranking of the file.
 inline constexpr std::size_t kMostRanked = 20;
+/// The number of models in the list of those that resemble the scene as a whole, besides those of
+/// the ranking.
+inline constexpr std::size_t kMostResembling = 50;
 
 /// Writes the file completely or not at all. Throws io::Error if it cannot be written.
 void write_recognised(const std::filesystem::path& path, const std::string& key,

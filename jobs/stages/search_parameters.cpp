@@ -72,6 +72,10 @@ const ParameterTable<SearchParameters>& search_parameter_table() {
        .value = Text<Search>{field<&Search::scale>(), problem_of_scale},
        .default_in_json = false},
       depth_jump_row(field<&Search::depth_jump>()),
+      // Only `semigeo similar` sets it.
+      {.key = "resemblance",
+       .value = Flag<Search>{field<&Search::resemblance>()},
+       .default_in_json = false},
       // Only `semigeo recognise` declares the option, because its default depends on the method.
       {.key = "min_score", .value = NumberIn<Search, double>{field<&Search::min_score>()}},
   };

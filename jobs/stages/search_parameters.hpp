@@ -28,6 +28,7 @@ struct SearchParameters {
   double depth_jump = kernels::kDepthJump;            ///< See `kernels::triangulate_grid`.
   ViewChoice view = ViewChoice::kAuto;
   std::string scale = "any";  ///< What `scale_range` reads.
+  bool resemblance = false;   ///< Models are compared with the scene as a whole, too.
 };
 
 /// Returns the sizes that objects may have: "any"; "known" if models and scene have one unit, which

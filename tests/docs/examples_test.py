@@ -14,8 +14,9 @@ sys.path.insert(0, str(REPOSITORY / "tests/e2e"))
 from support import PROGRAM, TIMEOUT, SemigeoTest, boulder, joined, write_ply
 from pages import split_blocks
 
-PAGES = ("README.md", "docs/usage.md", "docs/recognition.md", "docs/pictures.md", "docs/export.md", "docs/python.md")
-COMMANDS = ("run", "recognise", "export", "picture", "formats", "info", "status", "check", "library", "prune")
+PAGES = ("README.md", "docs/usage.md", "docs/recognition.md", "docs/similar.md",
+         "docs/pictures.md", "docs/export.md", "docs/python.md")
+COMMANDS = ("run", "recognise", "similar", "export", "picture", "formats", "info", "status", "check", "library", "prune")
 
 
 def runnable_blocks(page):
@@ -61,6 +62,11 @@ class ExamplesTest(SemigeoTest):
     def test_recognition(self):
         printed = self.run_page("docs/recognition.md")
         self.assertIn("scene.ply: 2 objects", printed[0])
+
+    def test_similar(self):
+        printed = self.run_page("docs/similar.md")
+        self.assertRegex(printed[0], r"a\.ply +0\.9\d+ .* same")
+        self.assertIn('"groups"', printed[1] + (self.folder / "groups.json").read_text(encoding="utf-8"))
 
     def test_pictures(self):
         self.run_block("sh", "semigeo run scans --output archive")
