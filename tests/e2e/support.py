@@ -3,6 +3,7 @@ A test program is started as `python3 -B NAME_test.py PROGRAM [unittest's argume
 
 import json
 import os
+import resource
 import shutil
 import subprocess
 import sys
@@ -57,6 +58,12 @@ class SemigeoTest(unittest.TestCase):
 
 # What runs note of themselves, with times in it.
 RECORDS = ("digests.txt", "estimates.json", "journal.jsonl")
+
+
+def cpu_of_children():
+    """Seconds of CPU time of all programs that have ended. Other than wall time it says little about what else runs."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 def contents(folder):

@@ -34,9 +34,11 @@ void check_name(const std::string& name) {
   check(name.find("//") == std::string::npos, "a name has an empty part");
 }
 
+/// Members may unpack to 1 GiB; more than this takes too long here.
+constexpr std::int64_t kMostBytes = 1 << 20;
+
 /// Reads the beginning of each member.
 void read_members(const std::filesystem::path& path) {
-  constexpr std::int64_t kMostBytes = 1 << 20;
   constexpr int kMostRead = 4;
   std::string buffer(1 << 12, '\0');
   io::ContainerReader reader(path);
@@ -50,8 +52,9 @@ void read_members(const std::filesystem::path& path) {
 }
 
 void read_first_scan(const std::filesystem::path& path, const io::ContainerListing& listing) {
-  const auto scan = std::ranges::find_if(
-      listing.members, [](const io::Member& member) { return io::is_scan_name(member.name); });
+  const auto scan = std::ranges::find_if(listing.members, [](const io::Member& member) {
+    return io::is_scan_name(member.name) && member.bytes <= kMostBytes;
+  });
   io::read_scan(path / (scan == listing.members.end() ? "none.ply" : scan->name));
 }
 
