@@ -30,6 +30,11 @@ const char* remedy_of(int code) {
 ReadError::ReadError(int code, std::filesystem::path file, std::string place, std::string problem)
     : Error(std::move(file), std::move(place), std::move(problem), remedy_of(code)), code_(code) {}
 
+void rethrow_if_unread(const Error& error) {
+  const auto* refused = dynamic_cast<const ReadError*>(&error);
+  if (refused != nullptr && !refused->is_absent()) throw ReadError(*refused);
+}
+
 ReadError open_error(const std::filesystem::path& path, int code) {
   if (code == ENOENT || code == ENOTDIR) return {code, path, "", "there is no such file"};
   if (code == EACCES || code == EPERM) return {code, path, "", "reading is not permitted"};

@@ -24,6 +24,10 @@ class ReadError : public Error {
   int code_;
 };
 
+/// Throws the error again if the system refused to read a file that is there. It is for those who
+/// go on without what is damaged: such a file may be whole the next time.
+void rethrow_if_unread(const Error& error);
+
 /// Returns the error when a file cannot be opened for reading. `code` is the errno of that call.
 ReadError open_error(const std::filesystem::path& path, int code);
 

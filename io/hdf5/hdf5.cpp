@@ -27,20 +27,34 @@ struct InnermostReason {
   int code = 0;
 };
 
-/// Holds HDF5's description of an error. It is empty if there was no memory for it.
-using Reason = std::optional<std::string>;
+/// Holds HDF5's description of an error.
+struct Reason {
+  std::optional<std::string> text = "";  ///< It is empty if there was no memory for it.
+  bool lacks_memory = false;             ///< HDF5 got no memory.
+};
 
-herr_t keep_first(unsigned, const H5E_error2_t* error, void* reason) noexcept {
+/// Keeps the description of the innermost entry, with which the walk begins.
+herr_t keep_innermost(unsigned index, const H5E_error2_t* error, void* data) noexcept {
+  auto& reason = *static_cast<Reason*>(data);
+  if (error->maj_num == H5E_RESOURCE || error->min_num == H5E_NOSPACE) reason.lacks_memory = true;
+  if (index > 0 || error->desc == nullptr) return 0;
   try {
-    *static_cast<Reason*>(reason) = error->desc == nullptr ? "" : error->desc;
+    reason.text = error->desc;
   } catch (const std::bad_alloc&) {
-    static_cast<Reason*>(reason)->reset();
+    reason.text.reset();
   }
-  return 1;  // stops the walk, which began at the innermost entry
+  return 0;
+}
+
+/// Returns an empty list of properties. Its making fails only if there is no memory.
+Hdf5Handle properties_of(hid_t type) {
+  const hid_t properties = H5Pcreate(type);
+  if (properties < 0) throw std::bad_alloc();
+  return {properties, H5Pclose};
 }
 
 Hdf5Handle file_access() {
-  Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  Hdf5Handle access = properties_of(H5P_FILE_ACCESS);
   H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_V110);
   H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
   // Files get their names when they are whole and are never changed in place, so locks would
@@ -79,14 +93,22 @@ void prepare_library() {
   static_cast<void>(quiet);
 }
 
+// Returns whether an allocation has failed in this thread since the last file was opened, and
+// forgets it. HDF5 mostly does not know: it reports what it could not find or do for lack of
+// memory.
+static bool allocation_failed() {
+  return std::exchange(errno, 0) == ENOMEM;
+}
+
 // Returns HDF5's innermost reason. From a report about a system call it takes only the words of the
 // system and the number of its error, which HDF5 has nowhere else.
 static InnermostReason reason_and_code() {
-  Reason reason = "";
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &reason);
-  if (!reason) throw std::bad_alloc();  // no exception may pass through a C library
-  std::string text = std::move(*reason);
-  int code = 0;
+  const bool failed = allocation_failed();
+  Reason reason;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_innermost, &reason);
+  if (!reason.text) throw std::bad_alloc();  // no exception may pass through a C library
+  std::string text = std::move(*reason.text);
+  int code = failed || reason.lacks_memory ? ENOMEM : 0;
   constexpr std::string_view kNumber = "errno = ";
   if (const std::size_t number = text.find(kNumber); number != std::string::npos)
     std::from_chars(text.data() + number + kNumber.size(), text.data() + text.size(), code);
@@ -114,6 +136,8 @@ void Hdf5File::fail(const std::string& place, const std::string& action) const {
 }
 
 void Hdf5File::refuse(const std::string& place, const std::string& problem) const {
+  if (allocation_failed())
+    throw ReadError(ENOMEM, shown_as_, place, "there was no memory to read it");
   throw Error(shown_as_, place, problem, kDamaged);
 }
 
@@ -131,7 +155,7 @@ std::int64_t Hdf5File::id() const {
 Hdf5File Hdf5File::create(const std::filesystem::path& file,
                           const std::filesystem::path& shown_as) {
   prepare_library();
-  const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  const Hdf5Handle creation = properties_of(H5P_FILE_CREATE);
   prepare_group(creation.get());
   const Hdf5Handle access = file_access();
   Hdf5File result({}, shown_as.empty() ? file : shown_as, true);
@@ -144,6 +168,7 @@ Hdf5File Hdf5File::create(const std::filesystem::path& file,
 
 Hdf5File Hdf5File::open(const std::filesystem::path& file, const std::filesystem::path& shown_as) {
   prepare_library();
+  errno = 0;
   const Hdf5Handle access = file_access();
   Hdf5File result({}, shown_as.empty() ? file : shown_as, false);
   result.handle_ = Hdf5Handle(
@@ -153,7 +178,7 @@ Hdf5File Hdf5File::open(const std::filesystem::path& file, const std::filesystem
 
 void Hdf5File::create_group(const std::string& path) {
   const Entry place = entry(path);
-  const Hdf5Handle properties(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  const Hdf5Handle properties = properties_of(H5P_GROUP_CREATE);
   prepare_group(properties.get());
   Hdf5Handle group(
       checked(H5Gcreate2(place.group, place.name, H5P_DEFAULT, properties.get(), H5P_DEFAULT), path,
@@ -205,7 +230,7 @@ bool Hdf5File::has(const std::string& path) const {
   if (path.empty() || path == "/" || path == opened_path_ || arrays_.contains(path)) return true;
   if (!has(path.substr(0, path.rfind('/')))) return false;
   const Entry place = entry(path);
-  return H5Lexists(place.group, place.name, H5P_DEFAULT) > 0;
+  return checked(H5Lexists(place.group, place.name, H5P_DEFAULT), path, "look for it") > 0;
 }
 
 std::vector<Hdf5Link> Hdf5File::links(const std::string& group) const {

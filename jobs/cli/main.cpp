@@ -29,15 +29,10 @@ bool results_were_written() {
   return std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
 }
 
-int run(int argc, char** argv) {
-  using namespace semigeo::jobs::cli;
-  std::string version;
-  try {
-    version = version_text();
-  } catch (const std::invalid_argument& e) {
-    complain(e);
-    return kUsage;
-  }
+using namespace semigeo::jobs::cli;
+
+/// Defines the commands, with their options, and does what the command line says.
+int run_command_line(const std::string& version, int argc, char** argv) {
   CLI::App app{"semigeo turns archives of 3-D scans into multi-scale surface datasets.", "semigeo"};
   app.formatter(std::make_shared<HelpFormatter>());
   app.footer(
@@ -95,14 +90,26 @@ int run(int argc, char** argv) {
     print_text(help.str());
     print_error(semigeo::io::printable_lines(problem.str()));
     return ok ? kAllDone : kUsage;
-  } catch (const std::bad_alloc&) {
-    complain("there is not enough memory; give less --memory or fewer --threads, or free some");
-    return kSomeFailed;
-  } catch (const std::exception& e) {
-    complain(e);
-    return kSomeFailed;
   }
   return exit_code;
+}
+
+int run(int argc, char** argv) {
+  try {
+    std::string version;
+    try {
+      version = version_text();
+    } catch (const std::invalid_argument& e) {
+      complain(e);
+      return kUsage;
+    }
+    return run_command_line(version, argc, argv);
+  } catch (const std::bad_alloc&) {
+    complain("there is not enough memory; give less --memory or fewer --threads, or free some");
+  } catch (const std::exception& e) {
+    complain(e);
+  }
+  return kSomeFailed;
 }
 
 }  // namespace

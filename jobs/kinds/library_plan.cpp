@@ -8,6 +8,7 @@
 #include "io/files/error.hpp"
 #include "io/files/read_error.hpp"
 #include "io/library/triplet_run.hpp"
+#include "jobs/archive/dataset_files.hpp"
 #include "jobs/archive/verification.hpp"
 #include "jobs/kinds/library.hpp"
 #include "jobs/kinds/partition.hpp"
@@ -81,10 +82,7 @@ LibraryModel model_of(const fs::path& dataset) {
 std::vector<LibraryModel> models_of(const fs::path& archive, const std::vector<PlannedJob>& plan,
                                     DigestCache& cache) {
   std::map<std::string, LibraryModel> models;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(archive / "scans", error)) {
-    const fs::path& path = entry.path();
-    if (path.extension() != ".vtkhdf" || path.filename().string().starts_with('.')) continue;
+  for (const fs::path& path : dataset_files(archive / "scans")) {
     const std::string name = path.stem().string();
     if (const auto keys = cache.dataset_keys(name)) {
       models[name] = {.name = name, .dataset = path, .dataset_key = keys->job_key};

@@ -192,6 +192,7 @@ class ScenePageKind final : public PageKind<SceneJobData, PageResult> {
         content.append("\n").append(fs::exists(dataset, ignored) ? io::read_origin(dataset).job_key
                                                                  : "none");
     } catch (const io::Error& e) {
+      io::rethrow_if_unread(e);
       content.append("\n").append(e.what());
     } catch (const json::exception& e) {
       content.append("\n").append(e.what());
@@ -281,7 +282,12 @@ class ReportKind final : public PageKind<ReportJobData, ReportJobResult> {
     remove_pages_of_what_is_gone(job);
     json document = archive_report(job.input, job.output.parent_path());
     document["version"] = SEMIGEO_VERSION;
-    write_page(job.output, job.key, page_with(pages().index, document));
+    // What could not be read this time may be read the next time.
+    const bool all_was_read = document["unread"] == 0;
+    document.erase("unread");
+    write_page(job.output,
+               all_was_read ? job.key : page_key(kIndexVersion, pages().index, "unread"),
+               page_with(pages().index, document));
     return ReportJobResult{std::ssize(document["scans"]), std::ssize(document["failures"])};
   }
 

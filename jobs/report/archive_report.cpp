@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
+#include <csignal>
 #include <map>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <span>
@@ -17,6 +20,7 @@
 #include "io/files/base64.hpp"
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
+#include "io/files/read_error.hpp"
 #include "jobs/archive/dataset_files.hpp"
 #include "jobs/archive/in_children.hpp"
 #include "jobs/archive/journal.hpp"
@@ -84,6 +88,7 @@ nlohmann::json record_of(const fs::path& path, const std::string& icon) {
 struct ReadDataset {
   nlohmann::json record;
   std::string problem;
+  bool may_be_whole = false;  ///< The problem is one of the system.
 };
 
 /// Reads datasets, each in a child process, because HDF5 crashes over some that are damaged.
@@ -91,11 +96,16 @@ std::vector<ReadDataset> read_datasets(const std::vector<fs::path>& datasets,
                                        const fs::path& folder) {
   constexpr char kRead = 'r';
   constexpr char kProblem = 'x';
+  constexpr char kUnread = 'u';
   constexpr double kSeconds = 60;
   const auto answer = [&](std::size_t i) {
     try {
       const std::string icon = read_icon(scan_page_path(folder, datasets[i].stem().string()));
       return kRead + record_of(datasets[i], icon).dump();
+    } catch (const io::ReadError& e) {
+      return kUnread + std::string(e.what());
+    } catch (const std::bad_alloc&) {
+      return kUnread + std::string(io::open_error(datasets[i], ENOMEM).what());
     } catch (const std::exception& e) {
       return kProblem + std::string(e.what());
     }
@@ -105,6 +115,7 @@ std::vector<ReadDataset> read_datasets(const std::vector<fs::path>& datasets,
   std::vector<ReadDataset> read(datasets.size());
   for (std::size_t i = 0; i < datasets.size(); ++i) {
     const std::string& text = results[i].text;
+    read[i].may_be_whole = results[i].signal == SIGKILL || text.starts_with(kUnread);
     if (results[i].exit_code != 0 || text.empty())
       read[i].problem = unfinished_reading(results[i], datasets[i]).what();
     else if (text.front() == kRead)
@@ -128,17 +139,6 @@ std::string url_of(const std::string& path) {
       url.append({'%', kDigits[byte >> 4], kDigits[byte & 15]});
   }
   return url;
-}
-
-/// Returns the names of the files with this extension in a folder, sorted, without hidden ones.
-std::vector<std::string> names_in(const fs::path& folder, const char* extension) {
-  std::vector<std::string> names;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored))
-    if (entry.path().extension() == extension && !entry.path().filename().string().starts_with('.'))
-      names.push_back(entry.path().stem().string());
-  std::ranges::sort(names);
-  return names;
 }
 
 io::Error no_archive(const fs::path& folder) {
@@ -185,11 +185,14 @@ class ReportReader {
       titles_[name] = scans_.back()["title"];
     }
     std::ranges::stable_sort(scans_, {}, [](const nlohmann::json& s) { return order_of(s); });
+    nlohmann::json scenes = scenes_of_archive();
+    const auto unread = std::ranges::count_if(read, &ReadDataset::may_be_whole) + unread_scenes_;
     return {{"archive", escaped(fs::weakly_canonical(archive_).filename().string())},
             {"run", run()},
             {"failures", failures()},
             {"scans", scans_},
-            {"scenes", scenes()}};
+            {"scenes", std::move(scenes)},
+            {"unread", unread}};
   }
 
  private:
@@ -278,13 +281,13 @@ class ReportReader {
         url_of(page.parent_path().filename().string() + "/" + page.filename().string());
   }
 
-  nlohmann::json scenes() const {
+  nlohmann::json scenes_of_archive() {
     nlohmann::json list = nlohmann::json::array();
     for (const std::string& name : scene_names(archive_)) list.push_back(scene(name));
     return list;
   }
 
-  nlohmann::json scene(const std::string& name) const {
+  nlohmann::json scene(const std::string& name) {
     nlohmann::json record = {{"name", escaped(name)}, {"title", escaped(name)}};
     try {
       const nlohmann::json document = read_recognised(archive_ / "recognised" / (name + ".json"));
@@ -297,6 +300,9 @@ class ReportReader {
         record["objects"].push_back(
             {{"title", shown_title_of(object.at("model"))}, {"score", object.at("score")}});
       add_page(record, scene_page_path(folder_, name));
+    } catch (const io::ReadError& e) {
+      add_reason(record, e.what());
+      ++unread_scenes_;
     } catch (const io::Error& e) {
       add_reason(record, e.what());
     } catch (const nlohmann::json::exception&) {
@@ -313,6 +319,7 @@ class ReportReader {
   std::vector<fs::path> datasets_;
   RunHistory history_;
   std::vector<nlohmann::json> scans_;
+  std::int64_t unread_scenes_ = 0;
   std::map<std::string, std::string> titles_;  ///< Titles of the scans by their names.
 };
 
@@ -328,7 +335,9 @@ std::string key_of_page(const fs::path& page) {
 }  // namespace
 
 std::vector<std::string> scene_names(const fs::path& archive) {
-  std::vector<std::string> names = names_in(archive / "recognised", ".json");
+  std::vector<std::string> names;
+  for (const fs::path& file : files_with_extension(archive / "recognised", ".json"))
+    names.push_back(file.stem().string());
   std::erase(names, "sources");
   return names;
 }

@@ -23,6 +23,8 @@ inline constexpr std::string_view kIndexVersion = "index 2";
 ///             last run. Failures come first, then names in order. Values that are not known are
 ///             absent.
 ///   scenes    a record for each recognised file, with the models that were found
+///   unread    number of datasets and recognised files that the system refused to read and that may
+///             be whole
 ///
 /// `folder` is that of the report: what has a page in it has the address of the page. Time and
 /// memory are those of the last job that made the dataset. Reads attributes and the sizes of level

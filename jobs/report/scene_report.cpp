@@ -16,6 +16,7 @@
 #include "io/files/base64.hpp"
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
+#include "io/files/read_error.hpp"
 #include "io/scans/scan_reader.hpp"
 #include "jobs/archive/digest_cache.hpp"
 #include "jobs/report/shown_surface.hpp"
@@ -165,6 +166,7 @@ class SceneReader {
       document_["surface"] = placed_json(scene_);
       document_["residual"] = {{"limit", limit_}};
     } catch (const io::Error& e) {
+      io::rethrow_if_unread(e);
       scene_ = {};
       document_["surface"] = {{"missing", e.what()}};
     }
@@ -190,6 +192,7 @@ class SceneReader {
                     most_vertices(kBytesPerVertex * static_cast<double>(digests_.size())));
       models.push_back(placed_json(model));
     } catch (const io::Error& e) {
+      io::rethrow_if_unread(e);
       models.push_back({{"missing", e.what()}});
     }
     models.back()["name"] = name;
@@ -203,7 +206,8 @@ class SceneReader {
         if (titles.contains(model)) continue;
         try {
           titles[model] = io::Dataset(dataset_of_model(files_.archive, model)).header().input_name;
-        } catch (const io::Error&) {
+        } catch (const io::Error& e) {
+          io::rethrow_if_unread(e);
           titles[model] = model;
         }
       }

@@ -79,6 +79,13 @@ TEST_F(ReadErrorTest, Hdf5FilesHaveTheSame) {
   EXPECT_EQ(open(file_).first, 0);  // this one is no HDF5 file
 }
 
+TEST_F(ReadErrorTest, OnlyWhatMayBeReadTheNextTimeIsThrownAgain) {
+  EXPECT_THROW(rethrow_if_unread(ReadError(EIO, "a", "", "")), ReadError);
+  EXPECT_THROW(rethrow_if_unread(ReadError(EMFILE, "a", "", "")), ReadError);
+  EXPECT_NO_THROW(rethrow_if_unread(ReadError(ENOENT, "a", "", "")));
+  EXPECT_NO_THROW(rethrow_if_unread(Error("a", "", "is damaged")));
+}
+
 TEST_F(ReadErrorTest, WhatCannotBeKnownIsNotAbsent) {
   EXPECT_TRUE(is_there(file_));
   EXPECT_TRUE(is_there(folder_.path()));

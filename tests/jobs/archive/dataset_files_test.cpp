@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "io/files/read_error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace semigeo::jobs {
@@ -22,6 +23,12 @@ TEST(DatasetFilesTest, AreCompleteDatasetsByName) {
 TEST(DatasetFilesTest, AreNoneInAFolderThatDoesNotExist) {
   const tests::TemporaryFolder folder;
   EXPECT_TRUE(dataset_files(folder / "absent").empty());
+}
+
+TEST(DatasetFilesTest, AFolderThatCannotBeReadIsNotTakenForAnEmptyOne) {
+  const tests::TemporaryFolder folder;
+  std::ofstream(folder / "file") << 'x';
+  EXPECT_THROW(dataset_files(folder / "file"), io::ReadError);
 }
 
 }  // namespace
