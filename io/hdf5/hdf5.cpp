@@ -83,13 +83,20 @@ herr_t collect_link(hid_t, const char* name, const H5L_info_t* info, void* data)
 
 }  // namespace
 
+/// Starts HDF5. If it got no memory to begin with, it would go on and crash later.
+static int start_hdf5() {
+  const int no_exit_handler = H5dont_atexit();
+  if (H5open() < 0) throw std::bad_alloc();
+  return no_exit_handler;
+}
+
 // Once for each process, HDF5's exit handler is turned off. It would flush what a full disk has
 // left unwritten, and crash. Once for each thread, the printing of HDF5's error stack is turned
 // off.
 void prepare_library() {
-  static const int no_exit_handler = H5dont_atexit();
+  static const int started = start_hdf5();
   thread_local const int quiet = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  static_cast<void>(no_exit_handler);
+  static_cast<void>(started);
   static_cast<void>(quiet);
 }
 

@@ -180,7 +180,8 @@ class FaultsTest(unittest.TestCase):
         # What a library is made of stays until it is made.
         left = [path for path in now if path not in wanted and
                 (path.endswith(".partial") or not path.startswith("archive/library/"))]
-        left += [str(path) for path in case.temporary.rglob("*")]
+        # A folder that could not be listed when it was to be removed stays.
+        left += [str(path) for path in case.temporary.rglob("*") if str(case.temporary) not in case.failed_call()]
         if left:
             found.append(f"leaves {left}")
         changed = [path for path in now if path in wanted and now[path] not in (wanted[path], case.before.get(path))]
