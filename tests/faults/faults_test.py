@@ -177,6 +177,10 @@ class FaultsTest(unittest.TestCase):
 
     def problems_of_files(self, case, code, text):
         found, now, wanted = [], contents(case.place), case.scenario.wanted
+        # What could not be opened to be removed stays, and the next run removes it.
+        unremoved = case.failed_call().partition(": ")[2]
+        if unremoved.endswith(("archive/lock", "library/partitions")):
+            now = {path: data for path, data in now.items() if not path.startswith(unremoved) or path in wanted}
         # What a library is made of stays until it is made.
         left = [path for path in now if path not in wanted and
                 (path.endswith(".partial") or not path.startswith("archive/library/"))]
