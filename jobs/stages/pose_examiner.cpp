@@ -55,6 +55,7 @@ double view_score_of(const ExaminedPose& pose, const ViewTuning& view) {
   const double explained = std::min(pose.explained / view.enough_explained, 1.0);
   return std::min(match / visible, 1.0) * seen.there / visible * std::sqrt(enough) *
          quality(pose, seen.opposed, view.score) *
+         std::pow(match / (match + pose.overlap.conflict), view.uncontradicted) *
          std::pow(explained * wanted(pose, view.score), view.score.explained);
 }
 

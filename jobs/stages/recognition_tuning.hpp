@@ -152,7 +152,7 @@ struct ScoreWeights {
 
 /// The score in a scene that was seen from one place is
 ///   match / visible there / visible sqrt(min(match / enough, 1)) held^h unopposed^u closeness^c
-///   (min(explained / enough, 1) wanted)^e
+///   (min(explained / enough, 1) wanted)^e (match / (match + conflict))^a
 /// where visible is the share of the model that should have been seen, and unopposed counts only
 /// what was seen. It is multiplied by `weight`, so that one least score holds for both, and the
 /// larger one of both scores counts.
@@ -166,7 +166,10 @@ struct ViewTuning {
                         .half_held = 0.015,
                         .explained = 0.5,
                         .prior_support = 4};
-  double weight = 0.65;  ///< Scores are multiplied by this.
+  /// The exponent a. Surfaces that were not seen hardly ever contradict a right pose; those of a
+  /// box that lies on a flat part of something else do.
+  double uncontradicted = 3;
+  double weight = 0.6;  ///< Scores are multiplied by this.
 };
 
 /// All numbers of recognition. The defaults are what `semigeo recognise` uses.

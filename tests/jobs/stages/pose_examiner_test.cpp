@@ -54,12 +54,12 @@ ExaminedPose perfect_view() {
   return pose;
 }
 
-TEST(ViewScoreTest, WhatIsHiddenDoesNotCount) {
+TEST(ViewScoreTest, WhatIsHiddenCountsOnlyIfItContradicts) {
   EXPECT_NEAR(view_score_of(perfect_view(), {}), 1, 1e-9);
   EXPECT_LT(score_of(perfect_view(), {}), 0.5);
   ExaminedPose pose = perfect_view();
-  pose.overlap.conflict = 0.3;  // of what was not seen
-  EXPECT_NEAR(view_score_of(pose, {}), 1, 1e-9);
+  pose.overlap.conflict = pose.overlap.match / 4;  // of what was not seen
+  EXPECT_NEAR(view_score_of(pose, {}), std::pow(0.8, ViewTuning{}.uncontradicted), 1e-9);
 }
 
 TEST(ViewScoreTest, WhatIsNotSeenWhereItShouldBeCounts) {
