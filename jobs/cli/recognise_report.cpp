@@ -146,21 +146,25 @@ void print_recognised(const RunResult& result, const SearchedLibrary& library,
         " CPU, ", io::fixed_text(summary.peak_bytes / 1e6, 0), " MB peak\n");
 }
 
+json search_json(const RunResult& result, const SearchedLibrary& library) {
+  const RunSummary& summary = result.summary;
+  return {{"library", {{"path", library.path.string()}, {"digest", library.digest}}},
+          {"done", summary.done},
+          {"up_to_date", summary.up_to_date},
+          {"failed", summary.failed},
+          {"not_run", summary.not_run},
+          {"wall_seconds", summary.wall_seconds},
+          {"cpu_seconds", summary.cpu_seconds},
+          {"peak_memory_bytes", summary.peak_bytes}};
+}
+
 void print_recognised_json(const RunResult& result, const SearchedLibrary& library,
                            const RecogniseReport& report) {
   const auto& plan = result.plan;
   const auto& outcomes = result.outcomes;
-  const RunSummary& summary = result.summary;
   const GivenNames given(library.path);
-  json document = {{"scenes", json::array()},
-                   {"library", {{"path", library.path.string()}, {"digest", library.digest}}},
-                   {"done", summary.done},
-                   {"up_to_date", summary.up_to_date},
-                   {"failed", summary.failed},
-                   {"not_run", summary.not_run},
-                   {"wall_seconds", summary.wall_seconds},
-                   {"cpu_seconds", summary.cpu_seconds},
-                   {"peak_memory_bytes", summary.peak_bytes}};
+  json document = search_json(result, library);
+  document["scenes"] = json::array();
   for (std::size_t i = 0; i < plan.size(); ++i) {
     const JobOutcome& outcome = outcomes[i];
     json scene = {{"input", plan[i].job.input.string()}, {"state", name_of(outcome.state)}};

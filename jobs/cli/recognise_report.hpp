@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <nlohmann/json_fwd.hpp>
 
 #include "jobs/archive/find_scans.hpp"
 #include "jobs/kinds/recognise_plan.hpp"
@@ -15,6 +16,10 @@ struct RecogniseReport {
   bool has_files = true;            ///< The files are kept, so their paths are printed.
   PassedOver passed_over;           ///< Files that are no scenes.
 };
+
+/// Returns what the JSON of every search says besides its scenes: the library, and what the run did
+/// and took.
+nlohmann::json search_json(const RunResult& result, const SearchedLibrary& library);
 
 /// Prints on stdout for each scene its objects with their poses and the first models of the
 /// ranking; then failures and totals.

@@ -11,6 +11,7 @@
 #include "jobs/cli/failures.hpp"
 #include "jobs/cli/json_output.hpp"
 #include "jobs/cli/output.hpp"
+#include "jobs/cli/recognise_report.hpp"
 #include "jobs/cli/run_report.hpp"
 #include "jobs/kinds/given_names.hpp"
 #include "jobs/run/progress.hpp"
@@ -250,17 +251,8 @@ void print_similar(const RunResult& result, const Searched& searched, const Simi
 void print_similar_json(const RunResult& result, const Searched& searched,
                         const SimilarReport& report) {
   const GivenNames given(searched.library.path);
-  const RunSummary& summary = result.summary;
-  json document = {
-      {"scans", json::array()},
-      {"library", {{"path", searched.library.path.string()}, {"digest", searched.library.digest}}},
-      {"done", summary.done},
-      {"up_to_date", summary.up_to_date},
-      {"failed", summary.failed},
-      {"not_run", summary.not_run},
-      {"wall_seconds", summary.wall_seconds},
-      {"cpu_seconds", summary.cpu_seconds},
-      {"peak_memory_bytes", summary.peak_bytes}};
+  json document = search_json(result, searched.library);
+  document["scans"] = json::array();
   std::vector<Query> queries;
   for (std::size_t i = 0; i < result.plan.size(); ++i) {
     const JobOutcome& outcome = result.outcomes[i];
