@@ -5,10 +5,12 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string_view>
 #include <system_error>
 
 #include "engine/descriptor.hpp"
@@ -23,6 +25,11 @@ namespace fs = std::filesystem;
 constexpr const char* kFileName = "lock";
 
 using Owner = LockOwner;
+
+// The lock of this process, for a signal handler.
+std::atomic<bool> has_lock = false;
+std::string own_file;
+std::string own_text;
 
 std::string text_of(const Owner& owner) {
   const ProcessIdentity& process = owner.process;
@@ -131,25 +138,39 @@ bool take_over(const fs::path& ours, const fs::path& file) {
 ArchiveLock::ArchiveLock(const fs::path& archive)
     : file_(archive / kFileName), owner_(this_process()) {
   io::AtomicFile ours(file_);  // it has a name of its own, and is removed in any case
+  const std::string content = text_of({owner_, utc_time()});
   {
     const engine::Descriptor text =
         engine::open_file(ours.temporary_path(), O_WRONLY | O_CREAT | O_EXCL);
     if (!text) fail(file_, errno);
-    const std::string content = text_of({owner_, utc_time()});
     if (!engine::write_all(text, content)) fail(file_, errno);
   }
   ours.sync();
   while (!place(ours.temporary_path(), file_) && !take_over(ours.temporary_path(), file_)) {
   }
+  has_lock = false;
+  own_file = file_;
+  own_text = content;
+  has_lock = true;
 }
 
 ArchiveLock::~ArchiveLock() {
   if (owner_.pid != getpid()) return;
+  has_lock = false;
   // No process replaces the lock of a living owner. But if the lock was removed by hand, another
   // process may have it now.
   const engine::Descriptor lock = engine::open_file(file_, O_RDONLY | O_NONBLOCK);
   const auto owner = lock ? owner_in(content_of(lock)) : std::nullopt;
   if (owner && owner->process == owner_) unlink(file_.c_str());
+}
+
+void remove_own_lock() noexcept {
+  if (!has_lock.exchange(false)) return;
+  const int lock = open(own_file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  char buffer[4096];
+  const ssize_t size = lock < 0 ? -1 : read(lock, buffer, sizeof buffer);
+  if (size >= 0 && std::string_view(buffer, static_cast<std::size_t>(size)) == own_text)
+    unlink(own_file.c_str());
 }
 
 std::optional<LockOwner> lock_owner(const fs::path& archive) {

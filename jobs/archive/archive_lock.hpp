@@ -34,6 +34,10 @@ class ArchiveLock {
   ProcessIdentity owner_;
 };
 
+/// Removes the lock that this process has, if any. Only for a process that is about to end: it may
+/// be called in a signal handler.
+void remove_own_lock() noexcept;
+
 /// The owner of a lock.
 struct LockOwner {
   ProcessIdentity process;

@@ -1,10 +1,13 @@
 #include "jobs/cli/run_plan.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "io/files/write_error.hpp"
 #include "jobs/archive/archive_lock.hpp"
@@ -14,6 +17,7 @@
 #include "jobs/cli/output.hpp"
 #include "jobs/cli/run_report.hpp"
 #include "jobs/plan/plan_graph.hpp"
+#include "jobs/run/drain.hpp"
 #include "jobs/run/local_runner.hpp"
 #include "jobs/slurm/slurm_runner.hpp"
 
@@ -110,10 +114,29 @@ std::string all_in_words(const PassedOver& passed_over) {
   return text;
 }
 
+// The folder of a run that keeps nothing, for a signal handler.
+std::string folder_to_remove;
+
+/// Ends a run whose plan is being made: nothing was done yet. The signal handler calls it.
+void end_at_once() {
+  static constexpr std::string_view kSentence =
+      "semigeo: stopped before a job began; run again to go on\n";
+  remove_own_lock();
+  if (!folder_to_remove.empty()) rmdir(folder_to_remove.c_str());
+  [[maybe_unused]] const ssize_t told = write(STDERR_FILENO, kSentence.data(), kSentence.size());
+  _exit(kStoppedEarly);
+}
+
 int run(const ExecutionOptions& options, const PlanSource& source) {
+  folder_to_remove = source.is_kept ? "" : source.home.string();
+  const EarlySignals signals;
   ChosenRunner chosen(options, source.home);
   RunHooks hooks{
-      .plan = source.plan,
+      .plan =
+          [&](DigestCache& cache) {
+            const EndAtOnce scope(end_at_once);
+            return source.plan(cache);
+          },
       .prepare = source.prepare,
       .runner = [&](const std::vector<PlannedJob>& plan) -> Runner& { return chosen.runner(plan); },
       .settings = [&] { return chosen.execution(); },

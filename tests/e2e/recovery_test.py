@@ -313,6 +313,26 @@ class StopTest(RecoveryTest):
                 self.assert_goes_on()
                 shutil.rmtree(self.archive)
 
+    def test_a_signal_before_jobs_begin_leaves_no_lock(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(signal=number):
+                process = self.start()
+                deadline = time.monotonic() + TIMEOUT
+                while not (self.archive / "lock").exists():
+                    self.assertLess(time.monotonic(), deadline)
+                    time.sleep(0.0005)
+                process.send_signal(signal.SIGSTOP)
+                os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
+                process.send_signal(number)
+                process.send_signal(signal.SIGCONT)
+                _, errors = process.communicate(timeout=TIMEOUT)
+                self.assertEqual(process.returncode, 75, errors)
+                self.assertIn(b"stop", errors)
+                self.assertFalse((self.archive / "lock").exists())
+                self.assertFalse(list(self.archive.rglob("*.partial")))
+                self.assert_goes_on()
+                shutil.rmtree(self.archive)
+
     def test_the_second_signal_ends_them(self):
         process = self.start(faults=",".join(f"{i}.ply=sleep" for i in range(SCANS)))
         self.await_worker(process)

@@ -188,6 +188,17 @@ TEST_F(ArchiveLockTest, RemovedByHandAndTakenByAnotherItIsTheOthers) {
   EXPECT_TRUE(fs::exists(file()));
 }
 
+TEST_F(ArchiveLockTest, AProcessThatEndsAtOnceRemovesItsOwn) {
+  remove_own_lock();  // there is none
+  ArchiveLock lock(folder_.path());
+  remove_own_lock();
+  EXPECT_FALSE(fs::exists(folder_ / "lock"));
+  ArchiveLock other(folder_.path());
+  std::ofstream(folder_ / "lock") << "somebody else's";
+  remove_own_lock();
+  EXPECT_TRUE(fs::exists(folder_ / "lock"));
+}
+
 TEST_F(ArchiveLockTest, AForkedChildDoesNotFreeIt) {
   std::optional<ArchiveLock> lock(folder_.path());
   Child child([&](const Child::Say& say) {

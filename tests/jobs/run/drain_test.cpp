@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <optional>
 #include <thread>
@@ -84,6 +86,70 @@ TEST(DrainTest, AfterItSignalsDoWhatTheyDid) {
     raise(number);
     EXPECT_EQ(seen, 1);
   }
+}
+
+TEST(EarlySignalsTest, ADrainGoesOnCounting) {
+  const Handler handler(SIGTERM);
+  ChildProcesses children;
+  {
+    const EarlySignals early;
+    raise(SIGTERM);
+    const Drain drain(children);
+    EXPECT_EQ(drain.requests(), 1);
+    EXPECT_TRUE(wakes(children));
+    raise(SIGTERM);
+    EXPECT_EQ(drain.requests(), 2);
+  }
+  EXPECT_EQ(seen, 0);
+  raise(SIGTERM);
+  EXPECT_EQ(seen, 1);
+}
+
+void end_with_75() {
+  _exit(75);
+}
+
+/// Returns the exit code of a child process that does this and then ends with 1.
+int code_of(void (*action)()) {
+  const pid_t child = fork();
+  if (child == 0) {
+    action();
+    _exit(1);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(EndAtOnceTest, ASignalEndsTheProcess) {
+  EXPECT_EQ(code_of([] {
+              const EarlySignals early;
+              const EndAtOnce scope(end_with_75);
+              raise(SIGINT);
+            }),
+            75);
+  EXPECT_EQ(code_of([] {  // one that came before
+              const EarlySignals early;
+              raise(SIGTERM);
+              const EndAtOnce scope(end_with_75);
+            }),
+            75);
+  EXPECT_EQ(code_of([] {  // one that comes after it is counted
+              const EarlySignals early;
+              { const EndAtOnce scope(end_with_75); }
+              raise(SIGTERM);
+              _exit(0);
+            }),
+            0);
+}
+
+TEST(EndAtOnceTest, AForkedChildDoesNotCallIt) {
+  EXPECT_EQ(code_of([] {
+              const EarlySignals early;
+              const EndAtOnce scope(end_with_75);
+              _exit(code_of([] { raise(SIGTERM); }) == 1 ? 0 : 2);
+            }),
+            0);
 }
 
 }  // namespace
