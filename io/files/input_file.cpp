@@ -12,11 +12,13 @@
 #include "io/files/read_error.hpp"
 
 namespace semigeo::io {
+
 InputFile::InputFile(std::filesystem::path path) : path_(std::move(path)) {
   // With O_NONBLOCK the opening of a pipe does not wait for a writer. Regular files are not
   // affected.
   descriptor_ = engine::open_file(path_, O_RDONLY | O_NONBLOCK);
-  if (!descriptor_) throw open_error(path_, errno);
+  // Sockets, and devices without a driver, cannot even be opened.
+  if (!descriptor_ && errno != ENXIO) throw open_error(path_, errno);
   struct stat status {};
   const bool known = ::fstat(descriptor_.get(), &status) == 0;
   if (known && S_ISREG(status.st_mode)) {

@@ -117,7 +117,9 @@ void GltfFile::parse(std::string_view text) {
   const std::string_view version = root().object("asset").text("version").value_or("");
   if (!version.starts_with("2."))
     root().object("asset").fail(
-        "glTF of version " + printable(std::string(version)) + " is not supported",
+        version.empty()
+            ? "the version of glTF is missing"
+            : "glTF of version " + printable(std::string(version)) + " is not supported",
         "export the scan as glTF 2.0");
 }
 

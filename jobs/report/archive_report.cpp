@@ -177,7 +177,8 @@ class ReportReader {
     for (std::size_t i = 0; i < datasets_.size(); ++i)
       names[datasets_[i].stem().string()] = &read[i];
     for (const auto& [name, source] : sources_.by_name()) names.try_emplace(name);
-    for (const auto& [job, error] : history_.run.failed)
+    // What could not be read as a scan has no dataset and no source.
+    for (const auto& [job, error] : history_.night.failed)
       if (job.starts_with(kSurface)) names.try_emplace(job.substr(kSurface.size()));
     if (names.empty() && !status_.last_run) throw no_archive(archive_);
     for (const auto& [name, dataset] : names) {

@@ -52,7 +52,6 @@ class HistoryReader {
       history_.run = std::move(next_);
       run_name_ = std::exchange(next_name_, "");
       history_.running.clear();
-      forget_others();
     }
     const auto* job = std::get_if<JobEnded>(&entry.event);
     std::string content = history_.digest;
@@ -78,7 +77,7 @@ class HistoryReader {
     add_core_time(run, job, seconds_between(run.started, entry.time));
   }
 
-  /// Forgets scans of earlier runs that are not shown.
+  /// Forgets scans that are not shown of earlier runs that made datasets.
   void forget_others() {
     for (const std::string& name : others_) {
       history_.last.erase(name);
@@ -94,7 +93,8 @@ class HistoryReader {
     if (job.state == "failed") run.failed[job.job] = job.error;
     if (!makes_page(job.job)) add_span(job, now);
     if (!job.job.starts_with(kSurface)) return;
-    run.made_datasets = true;
+    const bool tried = job.state != "up to date";
+    if (tried && !std::exchange(run.made_datasets, true)) forget_others();
     const std::string name = job.job.substr(kSurface.size());
     if (!is_shown_(name)) others_.push_back(name);
     history_.last[name] = job;
@@ -123,7 +123,7 @@ class HistoryReader {
   std::string next_name_;  ///< Name of that run.
   std::string run_name_;   ///< Name of the last run that has done something.
   const IsShown& is_shown_;
-  std::vector<std::string> others_;  ///< Names of scans of the last run that are not shown.
+  std::vector<std::string> others_;  ///< Names of scans of the last night that are not shown.
 };
 
 }  // namespace

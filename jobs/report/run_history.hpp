@@ -45,7 +45,8 @@ struct RunHistory {
 };
 
 /// Reads all of the journal of an archive. Keeps the last end of each dataset whose name
-/// `is_shown`, and all about the last run, so that the memory does not grow with the journal.
+/// `is_shown`, and all about the last run and the last one that made datasets, so that the memory
+/// does not grow with the journal.
 /// Throws io::Error if the journal cannot be read.
 RunHistory read_history(
     const std::filesystem::path& archive,

@@ -84,12 +84,27 @@ class Run {
     remove_damaged_outputs(result_.plan);
     // Digests are saved now, so that they are not lost if the run is killed.
     if (settings_.is_archive) try_to([&] { cache_.write(); });
+    const std::vector<const PlannedJob*> recovered = recovered_jobs();
+    const std::int64_t told = std::ssize(recovered);
     journal_.emplace(settings_.home, RunStarted{.version = settings_.program_version,
                                                 .threads = settings_.threads,
-                                                .jobs = jobs_to_run(),
-                                                .up_to_date = result_.summary.up_to_date,
+                                                .jobs = jobs_to_run() + told,
+                                                .up_to_date = result_.summary.up_to_date - told,
                                                 .input_bytes = bytes_to_read(result_.plan),
                                                 .passed_over = settings_.passed_over});
+    for (const PlannedJob* planned : recovered)
+      journal_->job_ended(*planned, {.state = JobState::kUpToDate});
+  }
+
+  /// Returns the jobs that are up to date and have failed in an earlier run: their scan could not
+  /// be read then, for example. The journal is told, or it would call them failed for ever.
+  std::vector<const PlannedJob*> recovered_jobs() const {
+    std::vector<const PlannedJob*> recovered;
+    if (result_.summary.up_to_date == 0) return recovered;
+    const std::set<std::string> failed = failed_jobs(settings_.home);
+    for (const PlannedJob& planned : result_.plan)
+      if (planned.up_to_date && failed.contains(job_id(planned.job))) recovered.push_back(&planned);
+    return recovered;
   }
 
   void execute_plan() {

@@ -65,4 +65,21 @@ void RunJournal::run_ended(const RunEnded& run) {
   write(run);
 }
 
+std::set<std::string> failed_jobs(const std::filesystem::path& archive) {
+  std::set<std::string> failed;
+  try {
+    read_journal(archive, [&](const JournalEntry& entry) {
+      const auto* job = std::get_if<JobEnded>(&entry.event);
+      if (job == nullptr) return;
+      if (job->state == name_of(JobState::kFailed))
+        failed.insert(job->job);
+      else
+        failed.erase(job->job);
+    });
+  } catch (const io::Error&) {
+    return {};
+  }
+  return failed;
+}
+
 }  // namespace semigeo::jobs

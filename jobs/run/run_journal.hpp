@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "jobs/archive/journal.hpp"
@@ -30,5 +31,9 @@ class RunJournal : public JobListener {
   std::optional<Journal> journal_;
   std::string problem_;
 };
+
+/// Returns the ids of the jobs whose last end in the journal of an archive is a failure. If the
+/// journal cannot be read, there are none.
+std::set<std::string> failed_jobs(const std::filesystem::path& archive);
 
 }  // namespace semigeo::jobs

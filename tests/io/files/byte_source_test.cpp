@@ -1,5 +1,9 @@
 #include "io/files/byte_source.hpp"
 
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
 #include "tests/io/scans/scan_files.hpp"
 
 namespace semigeo::io {
@@ -107,6 +111,14 @@ TEST_F(ByteSourceTest, SaysWhyAFileCannotBeOpened) {
   expect_parts(error_of(folder_ / "missing"), {"missing: there is no such file"});
   expect_parts(error_of(folder_.path()), {"is a folder"});
   expect_parts(error_of("/dev/null"), {"not a regular file"});
+  const std::string name = folder_ / "socket";
+  sockaddr_un address = {.sun_family = AF_UNIX, .sun_path = {}};
+  ASSERT_LT(name.size(), sizeof address.sun_path);
+  name.copy(address.sun_path, name.size());
+  const int socket = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  ASSERT_EQ(bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  expect_parts(error_of(name), {"not a regular file", "copy its contents"});
+  close(socket);
 }
 
 }  // namespace

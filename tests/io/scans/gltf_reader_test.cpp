@@ -488,6 +488,7 @@ TEST_F(GltfReader, RefusesDamagedFiles) {
   expect_parts(error("a.gltf", "hello"), {"byte 1", "damaged"});
   expect_parts(error("a.gltf", "{}"), {"no glTF file"});
   expect_parts(error("a.gltf", R"({"asset":{"version":"1.0"}})"), {"asset", "version 1.0"});
+  expect_parts(error("a.gltf", R"({"asset":{}})"), {"asset", "the version of glTF is missing"});
   expect_parts(error("a.gltf", R"({"asset":{"version":"2.0"}})"), {"holds no vertices"});
   const std::string good = square_parts().glb();
   expect_parts(error("a.glb", good.substr(0, 8)), {"ends in its header"});

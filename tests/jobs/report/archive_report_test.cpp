@@ -120,6 +120,33 @@ TEST_F(ArchiveReportTest, AFailureIsForgottenWhenTheScanSucceeds) {
   later.write(JobEnded{.job = "surface a.obj", .state = "done"});
   EXPECT_EQ(report()["scans"][0]["state"], "done");
   EXPECT_TRUE(report()["failures"].empty());
+  // It could not be read once, and is as it was.
+  later.write(JobEnded{.job = "surface a.obj", .state = "failed", .error = "no"});
+  EXPECT_EQ(report()["scans"][0]["state"], "failed");
+  Journal last(folder_.path(), "three");
+  last.write(RunStarted{.version = "1", .jobs = 1});
+  last.write(JobEnded{.job = "surface a.obj", .state = "up to date"});
+  EXPECT_EQ(report()["scans"][0]["state"], "done");
+  EXPECT_TRUE(report()["failures"].empty());
+}
+
+TEST_F(ArchiveReportTest, AFailureStaysWhenALibraryIsMadeOrScenesAreRecognised) {
+  make_dataset("a.obj", "a.obj");
+  Journal journal(folder_.path(), "one");
+  journal.write(RunStarted{.version = "1", .jobs = 2});
+  journal.write(JobEnded{.job = "surface pipe.obj", .state = "failed", .error = "is no file; no"});
+  Journal later(folder_.path(), "two");
+  later.write(RunStarted{.version = "1", .jobs = 1});
+  later.write(JobEnded{.job = "library library.h5", .state = "done"});
+  // It never was a scan, so that nothing but the journal knows it.
+  ASSERT_EQ(report()["scans"].size(), 2);
+  EXPECT_EQ(report()["scans"][0]["state"], "failed");
+  EXPECT_EQ(report()["failures"].size(), 1);
+  Journal last(folder_.path(), "three");
+  last.write(RunStarted{.version = "1", .jobs = 1});
+  last.write(JobEnded{.job = "surface a.obj", .state = "done"});
+  EXPECT_EQ(report()["scans"].size(), 1);
+  EXPECT_TRUE(report()["failures"].empty());
 }
 
 TEST_F(ArchiveReportTest, ADatasetThatCannotBeReadIsAFailure) {

@@ -109,6 +109,9 @@ TEST_F(RunHistoryTest, ScansOfEarlierRunsAreKeptOnlyIfTheyAreShown) {
   const auto shown = [](const std::string& name) { return name == "a.ply"; };
   // The last run is kept whole.
   EXPECT_EQ(read_history(folder_.path(), shown).last.size(), 2u);
+  // It stays so when other things are made.
+  run("recognition", {{.job = "recognise d.ply", .state = "done"}});
+  EXPECT_EQ(read_history(folder_.path(), shown).last.size(), 2u);
   run("two", {{.job = "surface c.ply", .state = "failed", .error = "no"}});
   const RunHistory history = read_history(folder_.path(), shown);
   EXPECT_TRUE(history.last.contains("a.ply"));

@@ -7,6 +7,7 @@
 #include "io/files/error.hpp"
 #include "jobs/archive/archive_lock.hpp"
 #include "jobs/archive/journal.hpp"
+#include "jobs/archive/status.hpp"
 #include "tests/jobs/run/fake_runner.hpp"
 #include "tests/jobs/written_text.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -87,6 +88,25 @@ TEST_F(RunTest, LocksPlansJournalsAndExecutesInThisOrder) {
   EXPECT_EQ(journal(), (Lines{"run", "+text a", "-text a done", "+text b", "-text b done", "end"}));
   EXPECT_NO_THROW(ArchiveLock(settings_.home));  // it was given back
   EXPECT_TRUE(warnings_.empty());
+}
+
+TEST_F(RunTest, TheJournalIsToldOnceOfAJobThatFailedAndIsUpToDateNow) {
+  runner_.on_start = [&](const JobStart& job) {
+    runner_.answer(job.number, job.planned->job.name == "a" ? kFailed : kDone);
+  };
+  run();
+  for (const std::string& name : names_) std::ofstream(folder_ / name) << "key of " << name << '\n';
+  const Lines before = journal();
+  EXPECT_EQ(run().summary.up_to_date, 2);
+  Lines wanted = before;
+  wanted.insert(wanted.end(), {"run", "-text a up to date", "end"});
+  EXPECT_EQ(journal(), wanted);
+  EXPECT_EQ(status_of(settings_.home).up_to_date, 2);
+  EXPECT_EQ(status_of(settings_.home).left(), 0);
+  run();
+  wanted.insert(wanted.end(), {"run", "end"});
+  EXPECT_EQ(journal(), wanted);
+  EXPECT_EQ(status_of(settings_.home).up_to_date, 2);
 }
 
 TEST_F(RunTest, FoldersThatAreLinksAreRefusedBeforeAnythingIsWritten) {
