@@ -14,21 +14,12 @@ import time
 import unittest
 from pathlib import Path
 
-from support import PROGRAM, TIMEOUT, SemigeoTest, contents, icosphere, write_ply
+from support import PROGRAM, TIMEOUT, SemigeoTest, children_of, contents, icosphere, write_ply
 
 MOMENTS = int(os.environ.get("SEMIGEO_RECOVERY_MOMENTS", 12))
 SEED = int(os.environ.get("SEMIGEO_RECOVERY_SEED", 1993))
 SCANS = 5
 LEVELS = ("--levels", "3")
-
-
-def children_of(process):
-    """Ids of the workers of a run; none once it has ended."""
-    try:
-        return [int(pid) for pid in
-                Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()]
-    except OSError:
-        return []
 
 
 class RecoveryTest(SemigeoTest):

@@ -66,6 +66,14 @@ def cpu_of_children():
     return usage.ru_utime + usage.ru_stime
 
 
+def children_of(process):
+    """Ids of the children of a process; none once it has ended."""
+    try:
+        return [int(pid) for pid in Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()]
+    except OSError:
+        return []
+
+
 def contents(folder):
     """Every file of a folder but the records of runs."""
     return {str(path.relative_to(folder)): path.read_bytes()
