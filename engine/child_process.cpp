@@ -132,7 +132,8 @@ ChildProcesses::Id ChildProcesses::start(const Command& command) {
                           .output = output.get(),
                           .answers = command.converses ? input.get() : -1,
                           .address_space_bytes = command.limits.address_space_bytes,
-                          .cpu_seconds = command.limits.cpu_seconds});
+                          .cpu_seconds = command.limits.cpu_seconds,
+                          .environment = command.environment});
   child->end = watch(child->process);
   if (command.limits.wall_seconds > 0)
     child->deadline = seconds_from_now(command.limits.wall_seconds);

@@ -29,6 +29,8 @@ struct ProcessLimits {
 struct Command {
   std::vector<std::string> arguments;  ///< [0] is the path of the program. PATH is not searched.
   ProcessLimits limits = {};
+  /// Variables "NAME=value" for a program whose environment does not have them yet.
+  std::vector<std::string> environment = {};
   /// This file takes standard output and standard error. It is created together with its folder. If
   /// the path is empty, both are dropped. A symbolic link at the path is not followed.
   std::filesystem::path log = {};

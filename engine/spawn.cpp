@@ -45,6 +45,12 @@ class Launch {
     for (const std::string& argument : program.arguments)
       arguments_.push_back(const_cast<char*>(argument.c_str()));
     arguments_.push_back(nullptr);
+    for (char** variable = environ; *variable != nullptr; ++variable)
+      environment_.push_back(*variable);
+    for (const std::string& variable : program.environment)
+      if (getenv(variable.substr(0, variable.find('=')).c_str()) == nullptr)
+        environment_.push_back(const_cast<char*>(variable.c_str()));
+    environment_.push_back(nullptr);
     // The copies get numbers above the descriptors that dup2 is going to replace.
     const int sources[] = {program.input, program.output, program.output, program.answers};
     for (int target = 0; target < kFirstUnused; ++target)
@@ -107,7 +113,7 @@ class Launch {
     if (setrlimit(RLIMIT_CPU, &cpu_time_) != 0) give_up();
     if (setrlimit(RLIMIT_AS, &address_space_) != 0) give_up();
     reset_signals();
-    execv(arguments_.front(), arguments_.data());
+    execve(arguments_.front(), arguments_.data(), environment_.data());
     give_up();
   }
 
@@ -130,6 +136,7 @@ class Launch {
   const pid_t parent_ = getpid();
   const rlimit no_core_ = {0, 0};
   std::vector<char*> arguments_;
+  std::vector<char*> environment_;
   Descriptor sources_[kFirstUnused];  ///< Element d becomes descriptor d.
   Descriptor failure_;                ///< The errno of a failure arrives here.
   Descriptor report_;                 ///< The errno is sent here.

@@ -21,6 +21,9 @@ struct Program {
   int answers;                        ///< Becomes descriptor 3; -1 = there is no such descriptor.
   std::uint64_t address_space_bytes;  ///< 0 = as much as this process may have.
   double cpu_seconds;                 ///< 0 = as much as this process may have.
+  /// Variables "NAME=value" that the program gets besides those of this process, which stay as they
+  /// are if they have the same name.
+  std::vector<std::string> environment = {};
 };
 
 /// Starts a program in a process of its own, which

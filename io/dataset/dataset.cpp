@@ -131,8 +131,9 @@ Selection Dataset::selection() const {
   return read_selection(file_, level_count_);
 }
 
-void Dataset::verify() const {
-  const std::string found = content_digest(file_);  // it comes first, because it opens every array
+void Dataset::verify(const ForEach& for_each) const {
+  // The digest comes first, because it opens every array.
+  const std::string found = content_digest(file_, {}, for_each);
   const Selection selected = selection();
   for (int k = 0; k < level_count_; ++k)
     if (level(k).features.total() != selected.feature_counts[k])

@@ -10,6 +10,7 @@
 #include "io/dataset/dataset_format.hpp"
 #include "io/dataset/feature_tables.hpp"
 #include "io/dataset/selection.hpp"
+#include "io/hdf5/for_each.hpp"
 #include "io/hdf5/hdf5.hpp"
 
 namespace semigeo::io {
@@ -66,8 +67,8 @@ class Dataset {
 
   /// Reads everything: every chunk against its checksum, all of it against the digest, every level
   /// for completeness, /selection against the levels, /VTKHDF for conformance. Throws Error on the
-  /// first fault. It keeps one chunk in memory.
-  void verify() const;
+  /// first fault. Chunks are decoded by `for_each`, a few MiB at a time.
+  void verify(const ForEach& for_each = {}) const;
 
  private:
   DatasetHeader read_header() const;

@@ -134,12 +134,12 @@ void DatasetWriter::write_selection(const Selection& selection) {
   selected_ = true;
 }
 
-std::string DatasetWriter::finish() {
+std::string DatasetWriter::finish(const ForEach& for_each) {
   if (!selected_) throw std::invalid_argument("the last level or the selection was not written");
   write_vtkhdf(file_, vtkhdf_layout(steps_), compression_);
-  std::string digest = complete_file(file_, target_, [](const std::filesystem::path& path) {
+  std::string digest = complete_file(file_, target_, [&](const std::filesystem::path& path) {
     const Dataset written(path);
-    written.verify();
+    written.verify(for_each);
     return written.digest();
   });
   // The sidecar is written first, because a dataset under its final name counts as done.

@@ -10,6 +10,7 @@
 #include "io/dataset/vtkhdf.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/hdf5/content_digest.hpp"
+#include "io/hdf5/for_each.hpp"
 
 namespace semigeo::io {
 
@@ -67,8 +68,9 @@ class DatasetWriter {
 
   /// Writes /VTKHDF, the content digest and `complete`, forces the file to the disk, reads all of
   /// it back and compares, writes the XDMF sidecar and gives the file its name. Returns the content
-  /// digest. At least one level and the selection must have been written.
-  std::string finish();
+  /// digest. At least one level and the selection must have been written. What is read back is
+  /// decoded by `for_each`.
+  std::string finish(const ForEach& for_each = {});
 
  private:
   void begin_level();

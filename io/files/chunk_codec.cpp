@@ -18,7 +18,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "stored arrays are little endian and chunks are written as they lie in memory");
 
-constexpr std::int64_t kChunkBytes = 256 * 1024;
+constexpr std::int64_t kMostChunkBytes = 256 * 1024;
 constexpr int kFastest = 1;
 constexpr std::size_t kChecksumBytes = 4;
 
@@ -32,6 +32,10 @@ struct FreeCompressor {
 struct FreeDecompressor {
   void operator()(libdeflate_decompressor* d) const { libdeflate_free_decompressor(d); }
 };
+
+constexpr std::int64_t divided_up(std::int64_t a, std::int64_t b) {
+  return (a + b - 1) / b;
+}
 
 template <typename Memory, typename Stored>
 void convert_rows(const ArrayView& view, std::int64_t first, std::int64_t count, std::byte* out) {
@@ -125,11 +129,22 @@ std::vector<std::byte> with_checksum(std::span<const std::byte> bytes) {
   return result;
 }
 
+// Pads rows to `size` bytes. Copies of the last row compress better than zeros, which would end
+// planes of one byte.
+std::vector<std::byte> with_last_row_repeated(std::span<const std::byte> rows,
+                                              std::size_t row_bytes, std::size_t size) {
+  std::vector<std::byte> padded(rows.begin(), rows.end());
+  padded.reserve(size);
+  while (padded.size() < size)
+    padded.insert(padded.end(), rows.end() - static_cast<std::ptrdiff_t>(row_bytes), rows.end());
+  return padded;
+}
+
 using Compressor = std::unique_ptr<libdeflate_compressor, FreeCompressor>;
 
-// Returns how many bytes at the front of shuffled rows are noise. The low bytes of coordinates, and
-// of the vertices of triangles, are noise, and shuffling puts them in front, one plane after the
-// other. A sample is packed to find out. It must become shorter by a thirty-second part.
+// Returns how many planes at the front of shuffled rows are noise. The low bytes of coordinates,
+// and of the vertices of triangles, are noise, and shuffling puts them in front, one plane after
+// the other. A sample is packed to find out. It must become shorter by a thirty-second part.
 std::size_t noise_in_front(libdeflate_compressor* compressor, std::span<const std::byte> shuffled,
                            std::size_t element_size) {
   constexpr std::size_t kSample = 4096;
@@ -137,10 +152,11 @@ std::size_t noise_in_front(libdeflate_compressor* compressor, std::span<const st
   if (plane < 2 * kSample) return 0;
   std::array<std::byte, kSample> packed;
   std::size_t noise = 0;
-  while (noise + plane < shuffled.size() &&
-         libdeflate_deflate_compress(compressor, shuffled.data() + noise + (plane - kSample) / 2,
+  while (noise + 1 < element_size &&
+         libdeflate_deflate_compress(compressor,
+                                     shuffled.data() + noise * plane + (plane - kSample) / 2,
                                      kSample, packed.data(), kSample - kSample / 32) == 0)
-    noise += plane;
+    ++noise;
   return noise;
 }
 
@@ -159,14 +175,19 @@ std::byte* put_stored_blocks(std::span<const std::byte> bytes, std::byte* out) {
   return out;
 }
 
-// Returns how many bytes at the back of shuffled rows are planes of zeros: the high bytes of
-// numbers of vertices.
-std::size_t zeros_at_back(std::span<const std::byte> shuffled, std::size_t element_size) {
+// Returns how many planes at the back of shuffled rows repeat one byte: the high bytes of numbers
+// of vertices are zeros, and where all patches are complete, all bytes of completeness are the
+// same.
+std::size_t constant_planes_at_back(std::span<const std::byte> shuffled, std::size_t element_size) {
   const std::size_t plane = shuffled.size() / element_size;
-  const auto last = std::find_if(shuffled.rbegin(), shuffled.rend(),
-                                 [](std::byte byte) { return byte != std::byte{0}; });
-  const auto zeros = static_cast<std::size_t>(last - shuffled.rbegin());
-  return plane == 0 ? 0 : zeros / plane * plane;
+  std::size_t planes = 0;
+  if (plane == 0) return planes;
+  while (planes < element_size) {
+    const std::byte* bytes = shuffled.data() + (element_size - planes - 1) * plane;
+    if (std::memcmp(bytes, bytes + 1, plane - 1) != 0) break;
+    ++planes;
+  }
+  return planes;
 }
 
 // Compresses `bytes` into blocks of a deflate stream that end at a byte, none of them the last one.
@@ -190,14 +211,16 @@ std::size_t put_open_blocks(std::span<const std::byte> bytes, std::byte* out, st
 
 constexpr std::size_t kLongestMatch = 258;
 
-// Bounds the length of put_zeros: thirteen bits for a match, and one for less than a match.
-constexpr std::size_t most_of_zeros(std::size_t count) {
-  return count / kLongestMatch * 13 / 8 + 264;
+// Bounds the length of put_constant_planes: thirteen bits for a match, and nine for each byte that
+// is less than a match.
+constexpr std::size_t most_of_constant_planes(std::size_t planes, std::size_t plane) {
+  return planes * (plane / kLongestMatch * 13 / 8 + (kLongestMatch + 1) * 9 / 8 + 2) + 3;
 }
 
-// Writes the last block of a deflate stream, which holds `count` zeros, with the fixed codes of
-// RFC 1951, 3.2.6: literals, and matches of the byte before.
-std::byte* put_zeros(std::size_t count, std::byte* out) {
+// Writes the last block of a deflate stream, which holds planes of `plane` bytes that are all the
+// same, with the fixed codes of RFC 1951, 3.2.6: literals, and matches of the byte before.
+std::byte* put_constant_planes(std::span<const std::byte> planes, std::size_t plane,
+                               std::byte* out) {
   std::uint64_t bits = 0;
   int held = 0;
   const auto put = [&](std::uint64_t code, int length) {
@@ -205,45 +228,60 @@ std::byte* put_zeros(std::size_t count, std::byte* out) {
     for (held += length; held >= 8; held -= 8, bits >>= 8) *out++ = static_cast<std::byte>(bits);
   };
   // Codes are sent from their most significant bit, which is the lowest bit of these constants.
-  const auto put_literal = [&] { put(0b00001100, 8); };       // 0x30
+  const auto put_reversed = [&](unsigned code, int length) {
+    std::uint64_t reversed = 0;
+    for (int bit = 0; bit < length; ++bit)
+      reversed |= std::uint64_t{code >> bit & 1} << (length - 1 - bit);
+    put(reversed, length);
+  };
+  const auto put_literal = [&](unsigned byte) {
+    byte < 144 ? put_reversed(0b00110000 + byte, 8) : put_reversed(0b110010000 + byte - 144, 9);
+  };
   const auto put_match = [&] { put(0b00000'10100011, 13); };  // 285: 258 bytes; distance 1
   put(0b011, 3);                                              // last block, fixed codes
-  if (count > 0) {
-    put_literal();
-    --count;
+  for (; !planes.empty(); planes = planes.subspan(plane)) {
+    const auto byte = std::to_integer<unsigned>(planes.front());
+    put_literal(byte);
+    std::size_t count = plane - 1;
+    for (; count >= kLongestMatch; count -= kLongestMatch) put_match();
+    for (; count > 0; --count) put_literal(byte);
   }
-  for (; count >= kLongestMatch; count -= kLongestMatch) put_match();
-  for (; count > 0; --count) put_literal();
   put(0, 7);  // end of block
   put(0, 7);  // fills the last byte
   return out;
 }
 
 // Writes `bytes` as a zlib stream (RFC 1950) to `out`, which must have room for as many bytes as
-// the input. The first `noise` bytes are stored as they are, because the compressor would spend
-// most of its time on them in vain; the last `zeros` bytes are known to be zero. Returns the length
-// of the stream, or 0 if it is not shorter than the input.
+// the input. They are planes of `plane` bytes. The first `noise` planes are stored as they are,
+// because the compressor would spend most of its time on them in vain; each of the last `constant`
+// planes repeats one byte. Returns the length of the stream, or 0 if it is not shorter than the
+// input.
 std::size_t zlib_stream(libdeflate_compressor* compressor, std::span<const std::byte> bytes,
-                        std::size_t noise, std::size_t zeros, std::byte* out) {
+                        std::size_t plane, std::size_t noise, std::size_t constant,
+                        std::byte* out) {
   constexpr std::size_t kHeader = 2;
   constexpr std::size_t kTrailer = 4;
-  const std::size_t blocks = (noise + 0xfffe) / 0xffff;
-  const std::size_t before = kHeader + noise + 5 * blocks;
-  const std::size_t behind = kTrailer + (zeros == 0 ? 0 : most_of_zeros(zeros));
+  const auto stored = bytes.first(noise * plane);
+  const auto repeated = bytes.last(constant * plane);
+  const auto middle = bytes.subspan(stored.size(), bytes.size() - stored.size() - repeated.size());
+  const std::size_t blocks = (stored.size() + 0xfffe) / 0xffff;
+  const std::size_t before = kHeader + stored.size() + 5 * blocks;
+  const std::size_t behind =
+      kTrailer + (repeated.empty() ? 0 : most_of_constant_planes(constant, plane));
   if (before + behind >= bytes.size()) return 0;
   const std::size_t room = bytes.size() - 1 - before - behind;
   out[0] = std::byte{0x78};  // deflate, window of 32 KiB
   out[1] = std::byte{0x01};  // fastest level, no dictionary, check bits
-  std::byte* end = put_stored_blocks(bytes.first(noise), out + kHeader);
-  const auto middle = bytes.subspan(noise, bytes.size() - noise - zeros);
-  if (zeros == 0 || !middle.empty()) {
-    const std::size_t length = zeros > 0 ? put_open_blocks(middle, end, room)
-                                         : libdeflate_deflate_compress(compressor, middle.data(),
-                                                                       middle.size(), end, room);
+  std::byte* end = put_stored_blocks(stored, out + kHeader);
+  if (repeated.empty() || !middle.empty()) {
+    const std::size_t length =
+        repeated.empty()
+            ? libdeflate_deflate_compress(compressor, middle.data(), middle.size(), end, room)
+            : put_open_blocks(middle, end, room);
     if (length == 0) return 0;
     end += length;
   }
-  if (zeros > 0) end = put_zeros(zeros, end);
+  if (!repeated.empty()) end = put_constant_planes(repeated, plane, end);
   const std::uint32_t adler = libdeflate_adler32(1, bytes.data(), bytes.size());
   for (int shift = 24; shift >= 0; shift -= 8)
     *end++ = static_cast<std::byte>(adler >> shift & 0xff);
@@ -296,8 +334,9 @@ std::uint32_t fletcher32(std::span<const std::byte> bytes) {
 
 ArrayShape shape_of(const ArrayView& view, Compression compression) {
   ArrayShape shape{view.stored_type, view.rows, view.columns, 1, compression};
-  shape.chunk_rows =
-      std::max<std::int64_t>(1, std::min(view.rows, kChunkBytes / shape.row_bytes()));
+  const std::int64_t most_rows = std::max<std::int64_t>(1, kMostChunkBytes / shape.row_bytes());
+  const std::int64_t chunks = std::max<std::int64_t>(1, divided_up(view.rows, most_rows));
+  shape.chunk_rows = std::max<std::int64_t>(1, divided_up(view.rows, chunks));
   shape.compact = view.rows > 0 && view.rows * shape.row_bytes() <= kMostCompactBytes;
   if (shape.compact) shape.compression = Compression::kNone;
   return shape;
@@ -315,6 +354,7 @@ EncodedChunk encode_chunk(const ArrayView& view, std::int64_t index, Compression
 
 EncodedChunk encode_rows(const ArrayShape& shape, std::span<const std::byte> rows) {
   const auto size = static_cast<std::size_t>(shape.chunk_bytes());
+  if (rows.empty()) throw std::invalid_argument("a chunk without rows");
   if (rows.size() > size) throw std::invalid_argument("more rows than a chunk holds");
   EncodedChunk chunk;
   chunk.raw_xxh3 = xxh3_64(rows);
@@ -324,8 +364,7 @@ EncodedChunk encode_rows(const ArrayShape& shape, std::span<const std::byte> row
   }
   std::vector<std::byte> padded;
   if (rows.size() < size) {
-    padded.assign(rows.begin(), rows.end());
-    padded.resize(size);
+    padded = with_last_row_repeated(rows, static_cast<std::size_t>(shape.row_bytes()), size);
     rows = padded;
   }
   if (shape.compression == Compression::kNone) {
@@ -341,9 +380,10 @@ EncodedChunk encode_rows(const ArrayShape& shape, std::span<const std::byte> row
   if (!compressor) throw std::bad_alloc();
   const std::span<const std::byte> shuffled(scratch.get(), size);
   const std::size_t noise = noise_in_front(compressor.get(), shuffled, element_size);
-  const std::size_t zeros = std::min(zeros_at_back(shuffled, element_size), size - noise);
-  const std::size_t packed =
-      zlib_stream(compressor.get(), shuffled, noise, zeros, scratch.get() + size);
+  const std::size_t constant =
+      std::min(constant_planes_at_back(shuffled, element_size), element_size - noise);
+  const std::size_t packed = zlib_stream(compressor.get(), shuffled, size / element_size, noise,
+                                         constant, scratch.get() + size);
   if (packed > 0) {
     chunk.bytes = with_checksum({scratch.get() + size, packed});
   } else {

@@ -52,9 +52,9 @@ struct EncodedArray {
   std::vector<EncodedChunk> chunks;
 };
 
-/// Returns the shape under which a view is stored. Chunks have about 256 KiB: there are enough of
-/// them to share among threads, and few enough for HDF5's index. Arrays of up to kMostCompactBytes
-/// are compact.
+/// Returns the shape under which a view is stored. Chunks have at most 256 KiB, and equal shares of
+/// the rows: there are enough of them to share among threads, and few enough for HDF5's index.
+/// Arrays of up to kMostCompactBytes are compact.
 ArrayShape shape_of(const ArrayView& view, Compression compression);
 
 /// Encodes chunk `index` of shape_of(view, compression) to the bytes that HDF5's own filters would
@@ -62,8 +62,9 @@ ArrayShape shape_of(const ArrayView& view, Compression compression);
 /// conversion.
 EncodedChunk encode_chunk(const ArrayView& view, std::int64_t index, Compression compression);
 
-/// Encodes rows that already have their stored form; at most chunk_rows of them. The function is
-/// pure and thread-safe.
+/// Encodes rows that already have their stored form: at least one, and at most chunk_rows of them.
+/// Fewer are padded with copies of the last one. The function is pure and thread-safe. Throws
+/// std::invalid_argument on other numbers of rows.
 EncodedChunk encode_rows(const ArrayShape& shape, std::span<const std::byte> rows);
 
 /// Encodes every chunk, one after the other.

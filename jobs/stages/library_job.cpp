@@ -10,6 +10,7 @@
 #include "io/library/hash_library_writer.hpp"
 #include "io/library/posting_partition.hpp"
 #include "io/library/triplet_run.hpp"
+#include "jobs/stages/for_each_on.hpp"
 #include "jobs/stages/library_runs.hpp"
 
 namespace semigeo::jobs {
@@ -184,11 +185,7 @@ LibraryJobResult run_library_job(const LibraryJob& job, const engine::RunContext
   const engine::Stopwatch stopwatch(context.observer, "verification");
   return {.models = runs.sizes.models,
           .postings = runs.sizes.postings,
-          .digest = writer.finish(cells_of(partitions), [&](std::int64_t count, const auto& body) {
-            context.workers.for_blocks(count, 1, [&](engine::IndexRange range) {
-              for (auto i = range.begin; i < range.end; ++i) body(i);
-            });
-          })};
+          .digest = writer.finish(cells_of(partitions), for_each_on(context.workers))};
 }
 
 }  // namespace semigeo::jobs

@@ -11,6 +11,7 @@
 #include "io/dataset/dataset_header.hpp"
 #include "io/dataset/dataset_writer.hpp"
 #include "jobs/stages/evolving_surface.hpp"
+#include "jobs/stages/for_each_on.hpp"
 #include "jobs/stages/level_features.hpp"
 #include "kernels/features/scale_selection.hpp"
 #include "kernels/surface/vertex_order.hpp"
@@ -287,7 +288,7 @@ SurfaceJobResult run_surface_job(const SurfaceJob& job, const SurfaceParameters&
   result.vanished = evolving.vanished();
   writer->write_selection(
       selection(std::move(totals.feature_counts), parameters.recognition_level));
-  writer->finish();
+  writer->finish(for_each_on(context.workers));
   return result;
 }
 

@@ -41,6 +41,23 @@ TEST(Spawn, DescriptorsMayHaveAnyNumbers) {
   EXPECT_EQ(exit_code_of(process), 5);
 }
 
+TEST(Spawn, VariablesAreAddedToTheEnvironmentUnlessTheyAreThere) {
+  const Descriptor nothing(open("/dev/null", O_RDWR | O_CLOEXEC));
+  ASSERT_EQ(setenv("SEMIGEO_TEST_OURS", "kept", 1), 0);
+  const std::vector<std::string> script = {
+      "/bin/sh", "-c",
+      "test \"$SEMIGEO_TEST_OURS\" = kept && test \"$SEMIGEO_TEST_NEW\" = 'a=b' && exit 5"};
+  const pid_t child = spawn({.arguments = script,
+                             .input = nothing.get(),
+                             .output = nothing.get(),
+                             .answers = -1,
+                             .address_space_bytes = 0,
+                             .cpu_seconds = 0,
+                             .environment = {"SEMIGEO_TEST_OURS=lost", "SEMIGEO_TEST_NEW=a=b"}});
+  EXPECT_EQ(exit_code_of(child), 5);
+  unsetenv("SEMIGEO_TEST_OURS");
+}
+
 TEST(Spawn, CpuTimeCanBeLimitedLater) {
   const int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);
   const Descriptor owner(nothing);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
 #include <stdexcept>
@@ -108,6 +109,14 @@ TEST_P(ChunkCodec, NumbersOfVerticesComeBack) {
   }
 }
 
+// All bytes of such planes are the same; some have codes of eight bits, others of nine.
+TEST_P(ChunkCodec, ConstantsComeBack) {
+  for (const std::size_t count : {1032U, 1033U, 1290U, 70001U})
+    for (const float value : {1.0F, -1.0F, -3.14159F, std::numeric_limits<float>::max()})
+      expect_stored(encode_array(array_of(std::vector<float>(count, value)), GetParam()),
+                    std::vector<float>(count, value));
+}
+
 TEST_P(ChunkCodec, OneRowComesBack) {
   const std::vector<float> values = {42};
   expect_stored(encode_array(array_of(values), GetParam()), values);
@@ -192,15 +201,25 @@ TEST(ChunkCodecDeflate, SkipsFiltersThatDoNotShrink) {
   EXPECT_EQ(array.chunks[0].bytes.size(), 262144U + 4U);
 }
 
-TEST(ChunkCodecDeflate, PaddingIsZeroAndNotHashed) {
-  std::vector<float> values(70000, 1.0F);  // 65536 rows a chunk: the second has 4464
+TEST(ChunkCodecDeflate, PaddingRepeatsTheLastRowAndIsNotHashed) {
+  std::vector<float> values(70001, 1.0F);  // 65536 rows are a full chunk: two of 35001 rows
+  values.back() = 2.0F;
   const EncodedArray array = encode_array(array_of(values), Compression::kDeflate);
   ASSERT_EQ(array.chunks.size(), 2U);
-  std::vector<std::byte> rows(static_cast<std::size_t>(array.shape.chunk_bytes()));
-  ASSERT_TRUE(decode_chunk(array.shape, array.chunks[1].bytes, 0, rows));
-  EXPECT_TRUE(std::all_of(rows.begin() + 4464 * 4, rows.end(),
-                          [](std::byte b) { return b == std::byte{0}; }));
-  EXPECT_EQ(array.chunks[1].raw_xxh3, xxh3_64(std::span(rows).first(4464 * 4)));
+  std::vector<float> rows(35001);
+  ASSERT_TRUE(
+      decode_chunk(array.shape, array.chunks[1].bytes, 0, std::as_writable_bytes(std::span(rows))));
+  EXPECT_EQ(rows[34998], 1.0F);
+  EXPECT_EQ(rows[34999], 2.0F);
+  EXPECT_EQ(rows[35000], 2.0F);
+  EXPECT_EQ(array.chunks[1].raw_xxh3, xxh3_64(std::as_bytes(std::span(rows).first(35000))));
+}
+
+TEST(ChunkCodecDeflate, PacksConstantsIntoAHundredthPart) {
+  const EncodedArray array =
+      encode_array(array_of(std::vector<float>(65536, -1.0F)), Compression::kDeflate);
+  ASSERT_EQ(array.chunks.size(), 1U);
+  EXPECT_LT(array.chunks[0].bytes.size(), 2622U);
 }
 
 TEST(ChunkCodecShape, SmallArraysAreCompact) {
@@ -217,13 +236,13 @@ TEST(ChunkCodecShape, SmallArraysAreCompact) {
   }
 }
 
-TEST(ChunkCodecShape, ChunksHaveAQuarterMebibyte) {
+TEST(ChunkCodecShape, ChunksHaveAtMostAQuarterMebibyteAndEqualShares) {
   ArrayView view = array_of(std::span<const Eigen::Vector3f>());
-  view.rows = 1'500'000;
+  view.rows = 1'500'000;  // 21845 rows are 256 KiB, of which 69 chunks are needed
   const ArrayShape shape = shape_of(view, Compression::kDeflate);
-  EXPECT_EQ(shape.chunk_rows, 21845);
   EXPECT_EQ(shape.chunk_count(), 69);
-  EXPECT_EQ(shape.rows_in_chunk(68), 1'500'000 - 68 * 21845);
+  EXPECT_EQ(shape.chunk_rows, 21740);
+  EXPECT_EQ(shape.rows_in_chunk(68), 1'500'000 - 68 * 21740);
 }
 
 TEST(ChunkCodecShape, RefusesConversionsThatLoseAndChunksThatAreNot) {
@@ -231,6 +250,7 @@ TEST(ChunkCodecShape, RefusesConversionsThatLoseAndChunksThatAreNot) {
   ArrayView view = array_of(values);
   EXPECT_THROW(encode_chunk(view, 1, Compression::kNone), std::invalid_argument);
   EXPECT_THROW(encode_chunk(view, -1, Compression::kNone), std::invalid_argument);
+  EXPECT_THROW(encode_rows(shape_of(view, Compression::kNone), {}), std::invalid_argument);
   view.stored_type = ElementType::kInt32;
   EXPECT_THROW(encode_chunk(view, 0, Compression::kNone), std::invalid_argument);
 }
