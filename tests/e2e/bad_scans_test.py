@@ -12,7 +12,7 @@ import unittest
 import h5py
 import numpy as np
 
-from support import (PROGRAM, SemigeoTest, contents, icosphere, obj_text, partials, ply_bytes,
+from support import (PROGRAM, TIMEOUT, SemigeoTest, contents, icosphere, obj_text, partials, ply_bytes,
                      ply_header, write_ply)
 
 
@@ -178,7 +178,7 @@ class DamagedDatasetTest(SemigeoTest):
         size = len(self.whole["scans/b.ply.vtkhdf"])
         for at in range(size // 80, size, size // 40):
             path = self.damage("b.ply", at)
-            process = subprocess.run([PROGRAM, "check", path], capture_output=True, timeout=60)
+            process = subprocess.run([PROGRAM, "check", path], capture_output=True, timeout=TIMEOUT)
             if process.returncode == 0:
                 self.assertEqual(self.everything("b.ply"), wanted, f"byte {at}")
             else:
@@ -267,7 +267,7 @@ class UnprivilegedTest(SemigeoTest):
         shutil.copy(PROGRAM, program)
         return subprocess.run([program, "run", self.scans, "--output", archive, "--levels", "1",
                                *arguments],
-                              capture_output=True, text=True, timeout=60, **self.unprivileged())
+                              capture_output=True, text=True, timeout=TIMEOUT, **self.unprivileged())
 
 
 class UnreadableScansTest(UnprivilegedTest):

@@ -7,7 +7,7 @@ import subprocess
 import time
 import unittest
 
-from support import PROGRAM, SemigeoTest, boulder, write_ply
+from support import PROGRAM, TIMEOUT, SemigeoTest, boulder, write_ply
 
 FAST = ("bench", "--quick", "--filter", "read/ply|level/even")
 
@@ -109,11 +109,11 @@ class BenchTest(SemigeoTest):
     def test_an_interrupted_measurement_leaves_nothing(self):
         process = subprocess.Popen([PROGRAM, "bench"], env=self.environment, stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, text=True)
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + TIMEOUT
         while not list(self.temporary.rglob("*.*")) and time.monotonic() < deadline:
             time.sleep(0.01)
         process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=60)
+        out, err = process.communicate(timeout=TIMEOUT)
         self.assertEqual(process.returncode, 75)
         self.assertEqual(out, "")
         self.assertIn("stopped before everything was measured", err)

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import h5py
 
-from support import PROGRAM, SemigeoTest, icosphere, obj_text, plane, write_ply
+from support import PROGRAM, TIMEOUT, SemigeoTest, icosphere, obj_text, plane, write_ply
 
 COMMANDS = ("run", "info", "check", "export", "prune", "report")
 
@@ -89,14 +89,14 @@ class UsageTest(SemigeoTest):
                               (*run, "--dry-run"), ("check", self.archive), ("--help",),
                               ("export", self.dataset("a.ply"), "-o", self.folder / "a.ply")):
                 process = subprocess.run([PROGRAM, *arguments], stdout=full,
-                                         stderr=subprocess.PIPE, timeout=60, text=True)
+                                         stderr=subprocess.PIPE, timeout=TIMEOUT, text=True)
                 self.assertEqual(process.returncode, 1, arguments)
                 self.assertIn("standard output", process.stderr)
 
     def test_a_closed_standard_output_is_no_dataset(self):
         write_ply(self.scans / "a.ply", icosphere(0))
         process = subprocess.run(["sh", "-c", '"$@" >&-', "sh", PROGRAM, "run", self.scans,
-                                  "--output", self.archive], stderr=subprocess.PIPE, timeout=60)
+                                  "--output", self.archive], stderr=subprocess.PIPE, timeout=TIMEOUT)
         self.assertEqual(process.returncode, 1)
         self.semigeo("check", self.archive)
 
@@ -197,7 +197,7 @@ class RunTest(SemigeoTest):
         if columns:
             fcntl.ioctl(stderr, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
         process = subprocess.run([PROGRAM, "run", self.scans, "--output", self.archive],
-                                 stdout=subprocess.PIPE, stderr=stderr, timeout=60, text=True)
+                                 stdout=subprocess.PIPE, stderr=stderr, timeout=TIMEOUT, text=True)
         os.close(stderr)
         shown = b""
         while True:

@@ -6,7 +6,7 @@ import os
 import subprocess
 import unittest
 
-from support import PROGRAM, SemigeoTest, boulder, partials, write_ply
+from support import PROGRAM, TIMEOUT, SemigeoTest, boulder, partials, write_ply
 
 LEVELS = ("--levels", 2)
 SCANS = 12
@@ -49,7 +49,7 @@ class FullDiskTest(SemigeoTest):
 
     def test_one_sentence_in_one_place(self):
         process = subprocess.run([PROGRAM, *map(str, self.arguments)], stdout=subprocess.PIPE,
-                                 stderr=subprocess.STDOUT, text=True, timeout=120)
+                                 stderr=subprocess.STDOUT, text=True, timeout=TIMEOUT)
         self.assertEqual(process.returncode, 75, process.stdout)
         self.assertEqual(process.stdout.count("No space left"), 1, process.stdout)
         process = self.semigeo(*self.arguments, "--quiet", code=75)
@@ -66,7 +66,7 @@ class FullDiskTest(SemigeoTest):
             except OSError:
                 pass
         code = subprocess.run([PROGRAM, *map(str, self.arguments)], capture_output=True,
-                              timeout=120).returncode
+                              timeout=TIMEOUT).returncode
         self.assertIn(code, (1, 75))  # the lock itself may not fit
         self.assertTrue(self.dataset("0.ply").exists())
         (self.disk / "filler").unlink()

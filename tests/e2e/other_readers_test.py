@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 
 import strict
-from support import SemigeoTest, boulder, icosphere, plane, write_ply
+from support import TIMEOUT, SemigeoTest, boulder, icosphere, plane, write_ply
 
 class OtherReadersTest(SemigeoTest):
     def setUp(self):
@@ -135,7 +135,7 @@ class OtherReadersTest(SemigeoTest):
     def run_node(self, script, *arguments):
         if not (PACKAGES / "node_modules").is_dir():
             self.skipTest("the npm packages of tests/e2e/readers are not installed")
-        process = subprocess.run([NODE, PACKAGES / script, *arguments], capture_output=True, text=True, timeout=120)
+        process = subprocess.run([NODE, PACKAGES / script, *arguments], capture_output=True, text=True, timeout=TIMEOUT)
         self.assertEqual(process.returncode, 0, process.stderr)
         return json.loads(process.stdout)
 

@@ -14,7 +14,7 @@ del sys.argv[2:5]
 
 import numpy as np  # noqa: E402
 
-from support import SemigeoTest, boulder, cpu_of_children, icosphere, joined, write_ply  # noqa: E402
+from support import TIMEOUT, SemigeoTest, boulder, cpu_of_children, icosphere, joined, write_ply  # noqa: E402
 
 HERE = Path(__file__).resolve().parent
 IMAGE = "<img src=x onerror=alert(1)>.ply"
@@ -53,7 +53,7 @@ class ReportTest(SemigeoTest):
             self.skipTest("no browser")
         environment = dict(os.environ, HOME=str(self.folder), TMPDIR=str(self.folder))
         process = subprocess.run([NODE, HERE / "report_browser.mjs", PACKAGES, BROWSER, check, *map(str, arguments)],
-                                 capture_output=True, text=True, timeout=200, env=environment)
+                                 capture_output=True, text=True, timeout=TIMEOUT, env=environment)
         self.assertEqual(process.returncode, 0, process.stdout + process.stderr)
         return process.stdout
 

@@ -6,7 +6,7 @@ import pty
 import subprocess
 import unittest
 
-from support import PROGRAM, SemigeoTest, icosphere, write_ply
+from support import PROGRAM, TIMEOUT, SemigeoTest, icosphere, write_ply
 
 LEVELS = ("--levels", "1")
 
@@ -26,10 +26,10 @@ class ReportTest(SemigeoTest):
 
     def test_one_file_has_each_failure_once(self):
         process = subprocess.run(self.run_command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                                 text=True, timeout=60)
+                                 text=True, timeout=TIMEOUT)
         self.assert_each_once(process.stdout)
         with open(self.folder / "log", "w+") as log:
-            subprocess.run(self.run_command, stdout=log, stderr=log, timeout=60)
+            subprocess.run(self.run_command, stdout=log, stderr=log, timeout=TIMEOUT)
         self.assert_each_once((self.folder / "log").read_text())
 
     def test_one_terminal_has_each_failure_once(self):
@@ -56,7 +56,7 @@ class ReportTest(SemigeoTest):
         self.assertEqual(process.stderr, "")
         self.assert_each_once(process.stdout)
         process = subprocess.run([*self.run_command, "--quiet"], stdout=subprocess.PIPE,
-                                 stderr=subprocess.STDOUT, text=True, timeout=60)
+                                 stderr=subprocess.STDOUT, text=True, timeout=TIMEOUT)
         self.assert_each_once(process.stdout)
 
     def test_many_are_summed_up_and_status_has_the_details(self):

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 PROGRAM = Path(sys.argv.pop(1)).resolve()
-TIMEOUT = 120
+TIMEOUT = 600  # of a call that hangs: no test may depend on how fast the machine is
 
 
 class SemigeoTest(unittest.TestCase):

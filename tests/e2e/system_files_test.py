@@ -9,7 +9,7 @@ import subprocess
 import time
 import unittest
 
-from support import PROGRAM, SemigeoTest, icosphere, write_ply
+from support import PROGRAM, TIMEOUT, SemigeoTest, icosphere, write_ply
 
 COMPLETE = """
 . "$1"; shift
@@ -112,7 +112,7 @@ class SystemFilesTest(SemigeoTest):
 
         def wait_for(text):
             nonlocal seen
-            end = time.monotonic() + 30
+            end = time.monotonic() + TIMEOUT
             while text not in seen and time.monotonic() < end:
                 if select.select([terminal], [], [], 1)[0]:
                     seen += os.read(terminal, 65536)

@@ -8,7 +8,7 @@ import subprocess
 import unittest
 from pathlib import Path
 
-from support import PROGRAM, SemigeoTest, boulder, plane, write_ply
+from support import PROGRAM, TIMEOUT, SemigeoTest, boulder, plane, write_ply
 
 LEVELS = ("--levels", 2)
 ORIGIN = (432109.001, 5123456.789, 123.456)
@@ -113,7 +113,7 @@ class NamesTest(SemigeoTest):
                              f"{character!r} in {text}")
 
     def outputs(self, *arguments):
-        process = subprocess.run([PROGRAM, *arguments], capture_output=True, timeout=120)
+        process = subprocess.run([PROGRAM, *arguments], capture_output=True, timeout=TIMEOUT)
         return process.stdout, process.stderr
 
     def test_no_name_steers_the_terminal(self):
