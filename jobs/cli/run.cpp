@@ -124,6 +124,7 @@ int find_and_run(const RunOptions& options, const std::string& effective_config)
   if (options.report && lacks_pages()) return kUsage;
   FoundScans found;
   try {
+    const InterruptibleSearch interruptible;
     found = find_scans(options.inputs, options.archive);
   } catch (const io::Error& e) {
     complain(e);

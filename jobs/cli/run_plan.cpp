@@ -165,6 +165,8 @@ int run(const ExecutionOptions& options, const PlanSource& source) {
 
 }  // namespace
 
+InterruptibleSearch::InterruptibleSearch() : end_(end_at_once) {}
+
 int run_plan(const ExecutionOptions& options, const PlanSource& source) {
   try {
     const bool dry = options.dry_run || options.graph != GraphFormat::kNone;

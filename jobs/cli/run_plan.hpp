@@ -8,6 +8,7 @@
 #include "jobs/cli/execution_options.hpp"
 #include "jobs/cli/run_report.hpp"
 #include "jobs/plan/plan.hpp"
+#include "jobs/run/drain.hpp"
 #include "jobs/run/run.hpp"
 
 namespace semigeo::jobs::cli {
@@ -28,6 +29,17 @@ struct PlanSource {
   std::function<void(const RunResult&)> print = {};
   /// Returns what the report says besides the jobs. It is called after the plan was made.
   std::function<RunNotes()> notes = [] { return RunNotes(); };
+};
+
+/// As long as it exists, SIGINT and SIGTERM end the process at once with kStoppedEarly. It is for
+/// what comes before a plan and writes nothing, such as the search for scans.
+class InterruptibleSearch {
+ public:
+  InterruptibleSearch();
+
+ private:
+  EarlySignals signals_;
+  EndAtOnce end_;
 };
 
 /// Makes the plan and runs it, or says which jobs would run. Prints results and returns an exit

@@ -61,6 +61,7 @@ int run_search(SearchRun& run,
   const SearchedLibrary library = searched_library(run.library);
   FoundScans scenes;
   try {
+    const InterruptibleSearch interruptible;
     scenes = scenes_of(run, library);
   } catch (const io::Error& e) {
     complain(e);

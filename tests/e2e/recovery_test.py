@@ -2,6 +2,7 @@
 it must and no more: nothing broken stands under a final name, and the next run ends with the bytes
 of a run that nobody disturbed. SEMIGEO_RECOVERY_MOMENTS is the number of kills."""
 
+import gzip
 import json
 import os
 import random
@@ -9,6 +10,7 @@ import select
 import shutil
 import signal
 import subprocess
+import tarfile
 import tempfile
 import time
 import unittest
@@ -323,6 +325,22 @@ class StopTest(RecoveryTest):
                 self.assertFalse(list(self.archive.rglob("*.partial")))
                 self.assert_goes_on()
                 shutil.rmtree(self.archive)
+
+    def test_a_signal_while_scans_are_searched(self):
+        # A container whose list is behind much else that has to be decompressed: 1 GiB of zeros.
+        member = tarfile.TarInfo("zeros.bin")
+        member.size = 1 << 30
+        zeros = gzip.compress(bytes(1 << 24), 1)
+        self.scans = self.folder / "scans"
+        (self.scans / "box.tar.gz").write_bytes(gzip.compress(member.tobuf()) + 64 * zeros)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(signal=number):
+                process = self.start()
+                self.await_worker(process)  # the child that lists it
+                process.send_signal(number)
+                _, errors = process.communicate(timeout=TIMEOUT)
+                self.assertEqual(process.returncode, 75, errors)
+                self.assertFalse(self.archive.exists())
 
     def test_the_second_signal_ends_them(self):
         process = self.start(faults=",".join(f"{i}.ply=sleep" for i in range(SCANS)))
