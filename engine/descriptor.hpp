@@ -30,7 +30,11 @@ class Descriptor {
   /// Returns the descriptor, or -1 if there is none, which poll passes over.
   int get() const { return descriptor_; }
   /// Closes the descriptor. Returns 0, or -1 with errno if that failed. Closing twice does nothing.
-  int close() { return descriptor_ < 0 ? 0 : ::close(std::exchange(descriptor_, -1)); }
+  /// A signal is no failure: Linux has closed the descriptor then.
+  int close() {
+    if (descriptor_ < 0 || ::close(std::exchange(descriptor_, -1)) == 0) return 0;
+    return errno == EINTR ? 0 : -1;
+  }
 
  private:
   int descriptor_ = -1;

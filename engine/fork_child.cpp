@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "engine/lack_of_memory.hpp"
 #include "engine/spawn.hpp"
 
 namespace semigeo::engine {
@@ -28,6 +29,8 @@ namespace {
   // The messages of the C library about a crash are of no use to users.
   const Descriptor nowhere = open_file("/dev/null", O_WRONLY);
   if (nowhere) dup2(nowhere.get(), STDERR_FILENO);
+  end_for_lack_of_memory("", kNoMemoryCode);
+  errno = 0;
   const rlimit no_core = {0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
   if (cpu_seconds > 0) limit_cpu_time(getpid(), cpu_seconds);
@@ -63,7 +66,8 @@ ForkedResult ForkedChild::wait() {
   for (;;) {
     const ssize_t count = read(answer_.get(), buffer.data(), buffer.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) break;
+    if (count < 0) fail("cannot read what a process has answered");
+    if (count == 0) break;
     result.text.append(buffer.data(), static_cast<std::size_t>(count));
   }
   answer_.close();

@@ -11,9 +11,11 @@ namespace semigeo::engine {
 
 /// Tells how a child process ended that ran a function, and what the function returned.
 struct ForkedResult {
-  std::string text;    ///< All that the function returned, if it came to its end.
-  int exit_code = -1;  ///< 0 if the function came to its end; -1 if a signal ended the child.
-  int signal = 0;      ///< 0 if the child ended by itself.
+  std::string text;  ///< All that the function returned, if it came to its end.
+  /// 0 if the function came to its end; kNoMemoryCode (engine/lack_of_memory.hpp) if the child got
+  /// no memory; -1 if a signal ended it.
+  int exit_code = -1;
+  int signal = 0;  ///< 0 if the child ended by itself.
 };
 
 /// A copy of this process that runs one function: for what may crash, or may never end, and must
@@ -24,9 +26,10 @@ class ForkedChild {
   /// Starts the child, which calls `work` and hands over the text that it returns. The child is
   /// killed by SIGXCPU when it has used `cpu_seconds` (0 = no limit; other values are rounded
   /// up to whole seconds), and when the calling thread ends. An exception that leaves `work` is a
-  /// crash. Its standard error is dropped, and it dumps no core. Throws std::system_error if there
-  /// can be no child. The cost grows with the memory that this process uses, about 6 ms for each
-  /// GB.
+  /// crash, but std::bad_alloc and a crash just after a failed allocation are ends with
+  /// kNoMemoryCode. Its standard error is dropped, and it dumps no core. Throws std::system_error
+  /// if there can be no child. The cost grows with the memory that this process uses, about 6 ms
+  /// for each GB.
   ForkedChild(const std::function<std::string()>& work, double cpu_seconds);
   /// Kills the child if nobody has waited for it.
   ~ForkedChild();

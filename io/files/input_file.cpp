@@ -20,12 +20,12 @@ InputFile::InputFile(std::filesystem::path path) : path_(std::move(path)) {
   // Sockets, and devices without a driver, cannot even be opened.
   if (!descriptor_ && errno != ENXIO) throw open_error(path_, errno);
   struct stat status {};
-  const bool known = ::fstat(descriptor_.get(), &status) == 0;
-  if (known && S_ISREG(status.st_mode)) {
+  if (::fstat(descriptor_.get(), &status) != 0) throw open_error(path_, errno);
+  if (S_ISREG(status.st_mode)) {
     size_ = status.st_size;
     return;
   }
-  if (known && S_ISDIR(status.st_mode))
+  if (S_ISDIR(status.st_mode))
     throw Error(path_, "", "is a folder, not a file", "name a file in it");
   throw Error(path_, "", "is not a regular file", "copy its contents into a file first");
 }

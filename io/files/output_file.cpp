@@ -1,5 +1,7 @@
 #include "io/files/output_file.hpp"
 
+#include <fcntl.h>
+
 #include <cerrno>
 #include <string>
 #include <system_error>
@@ -14,8 +16,9 @@ constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
 }  // namespace
 
 OutputFile::OutputFile(const std::filesystem::path& path)
-    : file_(path), stream_(std::fopen(file_.temporary_path().c_str(), "wbx")) {
-  if (!stream_) fail("cannot be created");
+    : file_(path),
+      descriptor_(engine::open_file(file_.temporary_path(), O_WRONLY | O_CREAT | O_EXCL)) {
+  if (!descriptor_) fail("cannot be created");
   buffer_.reserve(kBufferBytes + 64);
 }
 
@@ -32,7 +35,7 @@ void OutputFile::commit_unsynced() {
 void OutputFile::close() {
   flush();
   // Some failures are reported only when the file is closed.
-  if (std::fclose(stream_.release()) != 0) fail("cannot be written");
+  if (descriptor_.close() != 0) fail("cannot be written");
 }
 
 void OutputFile::add(const char* bytes, std::size_t count) {
@@ -41,8 +44,7 @@ void OutputFile::add(const char* bytes, std::size_t count) {
 }
 
 void OutputFile::flush() {
-  if (std::fwrite(buffer_.data(), 1, buffer_.size(), stream_.get()) != buffer_.size())
-    fail("cannot be written");
+  if (!engine::write_all(descriptor_, {buffer_.data(), buffer_.size()})) fail("cannot be written");
   buffer_.clear();
 }
 

@@ -4,13 +4,12 @@
 #include <array>
 #include <bit>
 #include <charconv>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <memory>
 #include <string_view>
 #include <vector>
 
+#include "engine/descriptor.hpp"
 #include "io/files/atomic_file.hpp"
 
 namespace semigeo::io {
@@ -48,16 +47,13 @@ class OutputFile {
   void commit_unsynced();
 
  private:
-  struct Close {
-    void operator()(std::FILE* stream) const { std::fclose(stream); }
-  };
   void add(const char* bytes, std::size_t count);
   void flush();
   void close();
   [[noreturn]] void fail(const char* problem) const;
 
   AtomicFile file_;
-  std::unique_ptr<std::FILE, Close> stream_;  // after file_, so that it is closed before it goes
+  engine::Descriptor descriptor_;  // after file_, so that it is closed before it goes
   std::vector<char> buffer_;
 };
 

@@ -25,6 +25,13 @@ const char* remedy_of(int code) {
   }
 }
 
+std::filesystem::file_type type_of(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto type = std::filesystem::status(path, error).type();
+  if (type == std::filesystem::file_type::none) throw open_error(path, error.value());
+  return type;
+}
+
 }  // namespace
 
 ReadError::ReadError(int code, std::filesystem::path file, std::string place, std::string problem)
@@ -42,10 +49,11 @@ ReadError open_error(const std::filesystem::path& path, int code) {
 }
 
 bool is_there(const std::filesystem::path& path) {
-  std::error_code error;
-  const auto type = std::filesystem::status(path, error).type();
-  if (type == std::filesystem::file_type::none) throw open_error(path, error.value());
-  return type != std::filesystem::file_type::not_found;
+  return type_of(path) != std::filesystem::file_type::not_found;
+}
+
+bool is_folder(const std::filesystem::path& path) {
+  return type_of(path) == std::filesystem::file_type::directory;
 }
 
 }  // namespace semigeo::io

@@ -35,4 +35,8 @@ ReadError open_error(const std::filesystem::path& path, int code);
 /// cannot be known.
 bool is_there(const std::filesystem::path& path);
 
+/// Returns whether there is a folder at the path, behind symbolic links. Throws ReadError if that
+/// cannot be known.
+bool is_folder(const std::filesystem::path& path);
+
 }  // namespace semigeo::io

@@ -3,7 +3,7 @@
 #include <future>
 #include <nlohmann/json.hpp>
 
-#include "io/files/error.hpp"
+#include "io/files/read_error.hpp"
 #include "io/files/small_file.hpp"
 
 namespace semigeo::io {
@@ -62,6 +62,9 @@ std::string complete_file(DigestedFile& digested, AtomicFile& target,
   try {
     if (verify(target.temporary_path()) != digest)
       throw Error(target.final_path(), "", "its digest is not that of what was written");
+  } catch (const ReadError& error) {
+    throw ReadError(error.code(), target.final_path(), error.place(),
+                    "what was just written cannot be read back (" + error.problem() + ")");
   } catch (const Error& error) {
     throw Error(target.final_path(), error.place(),
                 "what was just written reads back wrong (" + error.problem() + ")",

@@ -46,29 +46,27 @@ herr_t keep_innermost(unsigned index, const H5E_error2_t* error, void* data) noe
   return 0;
 }
 
-/// Returns an empty list of properties. Its making fails only if there is no memory.
+/// Returns an empty list of properties.
 Hdf5Handle properties_of(hid_t type) {
-  const hid_t properties = H5Pcreate(type);
-  if (properties < 0) throw std::bad_alloc();
-  return {properties, H5Pclose};
+  return {in_memory(H5Pcreate(type)), H5Pclose};
 }
 
 Hdf5Handle file_access() {
   Hdf5Handle access = properties_of(H5P_FILE_ACCESS);
-  H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_V110);
-  H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
+  in_memory(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_V110));
+  in_memory(H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG));
   // Files get their names when they are whole and are never changed in place, so locks would
   // protect nothing. With locks, files could not be opened on network file systems that have none.
-  H5Pset_file_locking(access.get(), false, true);
+  in_memory(H5Pset_file_locking(access.get(), false, true));
   return access;
 }
 
 // Groups store no times. Up to kMostInHeader entries or attributes lie in the group's header; with
 // more, a group gets a heap and an index of some kB.
 void prepare_group(hid_t properties) {
-  H5Pset_obj_track_times(properties, false);
-  H5Pset_link_phase_change(properties, kMostInHeader, kMostInHeader / 2);
-  H5Pset_attr_phase_change(properties, kMostInHeader, kMostInHeader / 2);
+  in_memory(H5Pset_obj_track_times(properties, false));
+  in_memory(H5Pset_link_phase_change(properties, kMostInHeader, kMostInHeader / 2));
+  in_memory(H5Pset_attr_phase_change(properties, kMostInHeader, kMostInHeader / 2));
 }
 
 herr_t collect_link(hid_t, const char* name, const H5L_info_t* info, void* data) noexcept {
@@ -83,39 +81,53 @@ herr_t collect_link(hid_t, const char* name, const H5L_info_t* info, void* data)
 
 }  // namespace
 
-/// Starts HDF5. If it got no memory to begin with, it would go on and crash later.
-static int start_hdf5() {
-  const int no_exit_handler = H5dont_atexit();
-  if (H5open() < 0) throw std::bad_alloc();
-  return no_exit_handler;
+// HDF5's exit handler is turned off. It would flush what a full disk has left unwritten, and crash.
+static bool has_started() {
+  return H5dont_atexit() >= 0 && H5open() >= 0;
 }
 
-// Once for each process, HDF5's exit handler is turned off. It would flush what a full disk has
-// left unwritten, and crash. Once for each thread, the printing of HDF5's error stack is turned
-// off.
+// HDF5 starts once for each process. If it gets no memory then, it stays half started, and later
+// calls would take that for damage. Once for each thread, the printing of HDF5's error stack is
+// turned off.
 void prepare_library() {
-  static const int started = start_hdf5();
+  static const bool started = has_started();
+  if (!started) throw std::bad_alloc();
   thread_local const int quiet = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  static_cast<void>(started);
   static_cast<void>(quiet);
 }
 
-// Returns whether an allocation has failed in this thread since the last file was opened, and
-// forgets it. HDF5 mostly does not know: it reports what it could not find or do for lack of
-// memory.
-static bool allocation_failed() {
-  return std::exchange(errno, 0) == ENOMEM;
+void start_hdf5() {
+  prepare_library();
+}
+
+// Returns the errno of the last call of the system that has failed in this thread since the last
+// file was opened, and forgets it. It is 0 if that error does not keep files from being read. HDF5
+// mostly does not tell it: it reports what it could not find or do then.
+static int refusal_of_system() {
+  switch (const int code = std::exchange(errno, 0)) {
+    case ENOMEM:
+    case EIO:
+    case EACCES:
+    case EPERM:
+    case EMFILE:
+    case ENFILE:
+    case ESTALE:
+    case ETIMEDOUT:
+      return code;
+    default:
+      return 0;
+  }
 }
 
 // Returns HDF5's innermost reason. From a report about a system call it takes only the words of the
 // system and the number of its error, which HDF5 has nowhere else.
 static InnermostReason reason_and_code() {
-  const bool failed = allocation_failed();
+  const int refusal = refusal_of_system();
   Reason reason;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_innermost, &reason);
   if (!reason.text) throw std::bad_alloc();  // no exception may pass through a C library
   std::string text = std::move(*reason.text);
-  int code = failed || reason.lacks_memory ? ENOMEM : 0;
+  int code = reason.lacks_memory ? ENOMEM : refusal;
   constexpr std::string_view kNumber = "errno = ";
   if (const std::size_t number = text.find(kNumber); number != std::string::npos)
     std::from_chars(text.data() + number + kNumber.size(), text.data() + text.size(), code);
@@ -143,8 +155,10 @@ void Hdf5File::fail(const std::string& place, const std::string& action) const {
 }
 
 void Hdf5File::refuse(const std::string& place, const std::string& problem) const {
-  if (allocation_failed())
-    throw ReadError(ENOMEM, shown_as_, place, "there was no memory to read it");
+  const int refusal = refusal_of_system();
+  if (refusal == ENOMEM)
+    throw ReadError(refusal, shown_as_, place, "there was no memory to read it");
+  if (refusal == EIO) throw ReadError(refusal, shown_as_, place, "the disk refused to read it");
   throw Error(shown_as_, place, problem, kDamaged);
 }
 

@@ -15,6 +15,10 @@
 
 namespace semigeo::io {
 
+/// Starts HDF5 in this process, if that has not been done. Throws std::bad_alloc if there is no
+/// memory for it. Then no file can be opened in this process any more.
+void start_hdf5();
+
 /// The values that attributes of our files have.
 using AttributeValue =
     std::variant<std::int64_t, double, std::string, std::vector<std::int64_t>, std::vector<double>>;

@@ -35,14 +35,15 @@ hid_t number_type(ElementType type) {
 
 // Returns the HDF5 type of a record: packed, with the members in their order.
 Hdf5Handle record_type(std::span<const RecordMember> members, std::int64_t size) {
-  Hdf5Handle record(H5Tcreate(H5T_COMPOUND, static_cast<std::size_t>(size)), H5Tclose);
+  Hdf5Handle record(in_memory(H5Tcreate(H5T_COMPOUND, static_cast<std::size_t>(size))), H5Tclose);
   std::size_t offset = 0;
   for (const RecordMember& member : members) {
     const hid_t number = number_type(member.type);
     const auto columns = static_cast<hsize_t>(member.columns);
-    const Hdf5Handle type(columns == 1 ? H5Tcopy(number) : H5Tarray_create2(number, 1, &columns),
-                          H5Tclose);
-    H5Tinsert(record.get(), member.name, offset, type.get());
+    const Hdf5Handle type(
+        in_memory(columns == 1 ? H5Tcopy(number) : H5Tarray_create2(number, 1, &columns)),
+        H5Tclose);
+    in_memory(H5Tinsert(record.get(), member.name, offset, type.get()));
     offset += H5Tget_size(type.get());
   }
   return record;
@@ -50,9 +51,9 @@ Hdf5Handle record_type(std::span<const RecordMember> members, std::int64_t size)
 
 // Arrays have no volatile bytes: they store no times and no fill values.
 Hdf5Handle array_properties() {
-  Hdf5Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  H5Pset_obj_track_times(properties.get(), false);
-  H5Pset_fill_time(properties.get(), H5D_FILL_TIME_NEVER);
+  Hdf5Handle properties(in_memory(H5Pcreate(H5P_DATASET_CREATE)), H5Pclose);
+  in_memory(H5Pset_obj_track_times(properties.get(), false));
+  in_memory(H5Pset_fill_time(properties.get(), H5D_FILL_TIME_NEVER));
   return properties;
 }
 
@@ -109,15 +110,15 @@ Hdf5File::Growing Hdf5File::begin_array(const std::string& path, const ArrayShap
   const Entry place = entry(path);
   const Hdf5Handle properties = array_properties();
   if (shape.compact) {
-    H5Pset_layout(properties.get(), H5D_COMPACT);
+    in_memory(H5Pset_layout(properties.get(), H5D_COMPACT));
   } else if (shape.rows > 0) {  // HDF5 has no chunks of a fixed extent of 0
     const Extent chunk = extent(shape.chunk_rows, shape.columns);
-    H5Pset_chunk(properties.get(), shape.columns == 1 ? 1 : 2, chunk.data());
+    in_memory(H5Pset_chunk(properties.get(), shape.columns == 1 ? 1 : 2, chunk.data()));
     if (shape.compression == Compression::kDeflate) {
-      H5Pset_shuffle(properties.get());
-      H5Pset_deflate(properties.get(), 1);
+      in_memory(H5Pset_shuffle(properties.get()));
+      in_memory(H5Pset_deflate(properties.get(), 1));
     }
-    H5Pset_fletcher32(properties.get());
+    in_memory(H5Pset_fletcher32(properties.get()));
   }
   const Hdf5Handle space = make_space(shape.rows, shape.columns);
   Hdf5Handle set(checked(H5Dcreate2(place.group, place.name, type_of(shape.type), space.get(),
@@ -179,7 +180,7 @@ void Hdf5File::write_virtual(const std::string& path, ElementType type, int colu
             path, "map a source");
     first += piece.rows;
   }
-  H5Sselect_all(space.get());
+  in_memory(H5Sselect_all(space.get()));
   const Entry place = entry(path);
   Hdf5Handle set(checked(H5Dcreate2(place.group, place.name, type_of(type), space.get(),
                                     H5P_DEFAULT, properties.get(), H5P_DEFAULT),
@@ -224,12 +225,12 @@ std::vector<std::byte> Hdf5File::read_through_library(const std::string& path) c
 Hdf5File::KnownArray Hdf5File::described(const std::string& path, std::int64_t array) const {
   KnownArray known;
   ArrayShape& shape = known.shape;
-  const Hdf5Handle type(H5Dget_type(array), H5Tclose);
+  const Hdf5Handle type(checked(H5Dget_type(array), path, "read its type"), H5Tclose);
   const std::optional<ElementType> element = element_type(type.get());
   if (!element) refuse(path, "its element type is none that a dataset uses");
   shape.type = *element;
 
-  const Hdf5Handle space(H5Dget_space(array), H5Sclose);
+  const Hdf5Handle space(checked(H5Dget_space(array), path, "read its shape"), H5Sclose);
   Extent size = {0, 1};
   const int rank = H5Sget_simple_extent_ndims(space.get());
   if (rank < 1 || rank > 2 ||
@@ -239,8 +240,10 @@ Hdf5File::KnownArray Hdf5File::described(const std::string& path, std::int64_t a
   shape.rows = static_cast<std::int64_t>(size[0]);
   shape.columns = static_cast<int>(size[1]);
 
-  const Hdf5Handle creation(H5Dget_create_plist(array), H5Pclose);
-  const H5D_layout_t layout = H5Pget_layout(creation.get());
+  const Hdf5Handle creation(checked(H5Dget_create_plist(array), path, "read its properties"),
+                            H5Pclose);
+  const auto layout =
+      static_cast<H5D_layout_t>(checked(H5Pget_layout(creation.get()), path, "read its layout"));
   known.is_virtual = layout == H5D_VIRTUAL;
   if (known.is_virtual) {
     known.pieces = pieces_of(path, creation.get(), shape.columns);
@@ -292,7 +295,8 @@ std::vector<VirtualPiece> Hdf5File::pieces_of(const std::string& path, std::int6
     std::array<char, 1024> source = {};
     Extent low = {0, 0};
     Extent high = {0, 0};
-    const Hdf5Handle space(H5Pget_virtual_vspace(creation, i), H5Sclose);
+    const Hdf5Handle space(checked(H5Pget_virtual_vspace(creation, i), path, "read its mapping"),
+                           H5Sclose);
     if (H5Pget_virtual_filename(creation, i, file_name.data(), file_name.size()) < 0 ||
         H5Pget_virtual_dsetname(creation, i, source.data(), source.size()) < 0 ||
         H5Sget_select_bounds(space.get(), low.data(), high.data()) < 0)
@@ -313,7 +317,10 @@ bool Hdf5File::Array::has_attributes() const {
 
 std::int64_t Hdf5File::Array::stored_bytes() const {
   if (shape().compact) return static_cast<std::int64_t>(known_->rows.size());
-  return static_cast<std::int64_t>(H5Dget_storage_size(opened()));
+  const hsize_t size = H5Dget_storage_size(opened());
+  // 0 is also what it returns if it fails.
+  if (size == 0 && H5Eget_num(H5E_DEFAULT) > 0) file_->fail(path_, "find its chunks");
+  return static_cast<std::int64_t>(size);
 }
 
 EncodedChunk Hdf5File::Array::read_chunk(std::int64_t index) const {

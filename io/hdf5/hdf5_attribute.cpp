@@ -21,10 +21,10 @@ std::string counted(std::string type, std::size_t count) {
 }
 
 Hdf5Handle string_type(std::string_view text) {
-  Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type.get(), std::max<std::size_t>(text.size(), 1));
-  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
-  H5Tset_cset(type.get(), is_ascii(text) ? H5T_CSET_ASCII : H5T_CSET_UTF8);
+  Hdf5Handle type(in_memory(H5Tcopy(H5T_C_S1)), H5Tclose);
+  in_memory(H5Tset_size(type.get(), std::max<std::size_t>(text.size(), 1)));
+  in_memory(H5Tset_strpad(type.get(), H5T_STR_NULLPAD));
+  in_memory(H5Tset_cset(type.get(), is_ascii(text) ? H5T_CSET_ASCII : H5T_CSET_UTF8));
   return type;
 }
 
@@ -40,6 +40,7 @@ AttributeShape attribute_shape(hid_t attribute) {
   const Hdf5Handle type(H5Aget_type(attribute), H5Tclose);
   const Hdf5Handle space(H5Aget_space(attribute), H5Sclose);
   AttributeShape shape;
+  if (type.get() < 0 || space.get() < 0) return shape;  // no memory, or damage
   const int rank = H5Sget_simple_extent_ndims(space.get());
   shape.scalar = rank == 0;
   shape.count = H5Sget_simple_extent_npoints(space.get());
@@ -108,7 +109,7 @@ void Hdf5File::write_attribute(const std::string& object, const std::string& nam
     checked(H5Awrite(attribute.get(), type, data), place, "write the attribute");
     checked(attribute.close(), place, "close the attribute");
   };
-  const Hdf5Handle scalar(H5Screate(H5S_SCALAR), H5Sclose);
+  const Hdf5Handle scalar(in_memory(H5Screate(H5S_SCALAR)), H5Sclose);
   if (const auto* text = std::get_if<std::string>(&value)) {
     write(string_type(*text).get(), scalar.get(), text->c_str(), text->size());
   } else if (const auto* integer = std::get_if<std::int64_t>(&value)) {
@@ -172,7 +173,8 @@ Hdf5Attribute Hdf5File::read(const Hdf5Handle& attribute, const std::string& obj
     case AttributeShape::Kind::kText: {
       if (shape.count > kLargestAttribute) break;
       std::string text(static_cast<std::size_t>(shape.count), '\0');
-      const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose);
+      const Hdf5Handle type(checked(H5Aget_type(attribute.get()), place, "read its type"),
+                            H5Tclose);
       read(type.get(), text.data());
       if (!is_utf8(text)) refuse(place, "is no UTF-8 text");
       if (text != std::string(1, '\0'))

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <new>
 #include <string>
 #include <type_traits>
 
@@ -22,6 +23,13 @@ void prepare_library();
 /// Returns why the last call failed. Every call of the library forgets it.
 std::string innermost_reason();
 
+/// Returns the result of a call that touches no file and fails only if there is no memory. Throws
+/// std::bad_alloc if it has failed.
+inline std::int64_t in_memory(std::int64_t result) {
+  if (result < 0) throw std::bad_alloc();
+  return result;
+}
+
 /// The rows and columns of an array.
 using Extent = std::array<hsize_t, 2>;
 
@@ -33,7 +41,7 @@ inline Extent extent(std::int64_t rows, int columns) {
 /// Returns the data space (rows), or (rows, columns) if there are several columns.
 inline Hdf5Handle make_space(std::int64_t rows, int columns) {
   const Extent size = extent(rows, columns);
-  return {H5Screate_simple(columns == 1 ? 1 : 2, size.data(), nullptr), H5Sclose};
+  return {in_memory(H5Screate_simple(columns == 1 ? 1 : 2, size.data(), nullptr)), H5Sclose};
 }
 
 }  // namespace semigeo::io

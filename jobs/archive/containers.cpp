@@ -1,6 +1,5 @@
 #include "jobs/archive/containers.hpp"
 
-#include <csignal>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -26,17 +25,11 @@ double most_seconds(const fs::path& container) {
 
 /// Returns why a child that read a container has ended without an answer.
 std::string problem_of(const fs::path& container, const engine::ForkedResult& result) {
-  if (result.signal == SIGKILL)
-    return io::Error(container, "",
-                     "was not read to its end: the process that read it was killed, by hand or "
-                     "because memory ran out",
-                     "free some memory, and run again")
-        .what();
-  return io::Error(container, "",
-                   result.signal == SIGXCPU ? "it is damaged so that reading it never ends"
-                                            : "it is damaged so that reading it crashes",
-                   "copy it again from its source, or unpack it and give the scans")
-      .what();
+  constexpr DamageWords kWords{
+      .endless = "it is damaged so that reading it never ends",
+      .crash = "it is damaged so that reading it crashes",
+      .remedy = "copy it again from its source, or unpack it and give the scans"};
+  return unfinished_reading(result, container, kWords).what();
 }
 
 std::string text_of(const io::ContainerListing& listing) {

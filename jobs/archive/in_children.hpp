@@ -13,11 +13,14 @@
 
 namespace semigeo::jobs {
 
+/// Returns whether a child process has crashed, and not for lack of memory.
+bool has_crashed(const engine::ForkedResult& result);
+
 /// Calls `work(i)` for 0 <= i < count, each in a child process (engine::ForkedChild), because it
 /// reads files that may make a library crash or loop. As many run side by side as `total` has cores
 /// and memory for. `bytes(i)` is the memory that each is expected to need. One that needs more than
-/// there is runs alone. `cpu_seconds(i)` limits the time of each. Returns how each has ended, in
-/// order.
+/// there is runs alone. `cpu_seconds(i)` limits the time of each. One that crashes is tried once
+/// more: only damage crashes a library each time. Returns how each has ended, in order.
 template <typename Work, typename Seconds, typename Bytes>
 std::vector<engine::ForkedResult> in_children(std::size_t count, engine::Amount total,
                                               const Work& work, const Seconds& cpu_seconds,
@@ -30,6 +33,9 @@ std::vector<engine::ForkedResult> in_children(std::size_t count, engine::Amount 
     for (std::size_t next; (next = children.size()) < count && resources.admit(amount(next));)
       children.emplace_back([&work, next] { return std::string(work(next)); }, cpu_seconds(next));
     results.push_back(children[i].wait());
+    if (has_crashed(results.back()))
+      results.back() =
+          engine::ForkedChild([&work, i] { return std::string(work(i)); }, cpu_seconds(i)).wait();
     resources.release(amount(i));
   }
   return results;
@@ -45,7 +51,19 @@ std::vector<engine::ForkedResult> in_children(std::size_t count, int at_once, co
                      [](std::size_t) { return std::uint64_t{0}; });
 }
 
+/// Returns whether a reader that did not come to its end says something about the file: it crashed,
+/// again and again, or never ended. In all other cases the file may be whole.
+bool tells_of_damage(const engine::ForkedResult& result);
+
+/// What is said about a file that its reader says to be damaged.
+struct DamageWords {
+  const char* endless = "it is damaged so that HDF5 never ends reading it";
+  const char* crash = "it is damaged so that HDF5 crashes over it";
+  const char* remedy = "remove it and run again, or run with --verify";
+};
+
 /// Returns the error about a file whose reader in a child process did not come to its end.
-io::Error unfinished_reading(const engine::ForkedResult& result, const std::filesystem::path& file);
+io::Error unfinished_reading(const engine::ForkedResult& result, const std::filesystem::path& file,
+                             const DamageWords& words = {});
 
 }  // namespace semigeo::jobs

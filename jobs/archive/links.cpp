@@ -1,6 +1,6 @@
 #include "jobs/archive/links.hpp"
 
-#include "io/files/error.hpp"
+#include "io/files/read_error.hpp"
 
 namespace semigeo::jobs {
 
@@ -11,8 +11,10 @@ void refuse_links(const fs::path& home) {
        {"scans", "logs", "library", "library/triplets", "library/partitions", "triplets",
         "partitions", "recognised", "report", "report/scans", "report/scenes", "slurm"}) {
     const fs::path folder = home / name;
-    std::error_code ignored;
-    if (fs::is_symlink(fs::symlink_status(folder, ignored)))
+    std::error_code error;
+    const fs::file_status status = fs::symlink_status(folder, error);
+    if (status.type() == fs::file_type::none) throw io::open_error(folder, error.value());
+    if (fs::is_symlink(status))
       throw io::Error(folder, "", "is a symbolic link, behind which nothing is written or removed",
                       "put the folder itself in its place, or give the folder of the whole archive "
                       "as a link");

@@ -1,7 +1,6 @@
 #include "jobs/archive/verification.hpp"
 
 #include <cerrno>
-#include <csignal>
 #include <cstdint>
 #include <new>
 #include <system_error>
@@ -50,7 +49,7 @@ std::string answer_about(const fs::path& file, Verify verify) {
 Verified result_of(const engine::ForkedResult& result, const fs::path& file) {
   if (result.exit_code == 0 && !result.text.empty())
     return {.problem = result.text.substr(1), .was_read = result.text.front() == kRead};
-  return {.problem = unfinished_reading(result, file).what(), .was_read = result.signal != SIGKILL};
+  return {.problem = unfinished_reading(result, file).what(), .was_read = tells_of_damage(result)};
 }
 
 std::vector<Verified> verify_all(const std::vector<fs::path>& files, Verify verify, int at_once) {

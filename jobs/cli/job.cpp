@@ -3,7 +3,10 @@
 
 #include <filesystem>
 #include <memory>
+#include <new>
 
+#include "engine/lack_of_memory.hpp"
+#include "io/hdf5/hdf5.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/kinds/all_kinds.hpp"
 #include "jobs/run/worker.hpp"
@@ -54,7 +57,13 @@ void add_job(CLI::App& app, int& exit_code) {
       return;
     }
     const bool told = fcntl(kAnswers, F_GETFD) != -1;
-    exit_code = serve_jobs(STDIN_FILENO, told ? kAnswers : STDOUT_FILENO, all_kinds());
+    engine::end_for_lack_of_memory("semigeo: there is not enough memory\n", engine::kNoMemoryCode);
+    try {
+      io::start_hdf5();  // before a job limits its memory
+      exit_code = serve_jobs(STDIN_FILENO, told ? kAnswers : STDOUT_FILENO, all_kinds());
+    } catch (const std::bad_alloc&) {
+      exit_code = engine::kNoMemoryCode;
+    }
   });
 }
 

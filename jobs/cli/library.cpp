@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/files/error.hpp"
+#include "io/files/read_error.hpp"
 #include "io/library/hash_library.hpp"
 #include "jobs/archive/verification.hpp"
 #include "jobs/cli/command.hpp"
@@ -43,14 +44,12 @@ LibraryPlace place_at(const std::string& library) {
 
 /// Returns the library of an archive, or the file itself.
 std::string library_file(const std::string& file_or_archive) {
-  std::error_code ignored;
-  if (!fs::is_directory(file_or_archive, ignored)) return file_or_archive;
+  if (!io::is_folder(file_or_archive)) return file_or_archive;
   return place_of_archive(file_or_archive).library.string();
 }
 
 bool is_archive(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_directory(path / "scans", ignored);
+  return io::is_folder(path / "scans");
 }
 
 /// Returns the datasets by name. Throws io::Error if two have the same name, because they would be
@@ -176,8 +175,7 @@ int list(const LibraryOptions& options) {
 }
 
 int check(const LibraryOptions& options) {
-  std::error_code ignored;
-  if (!fs::exists(options.library, ignored))
+  if (!io::is_there(options.library))
     throw io::Error(options.library, "", "no such file", "check the path");
   const auto [problem, was_read] = verify_libraries({options.library}).front();
   if (options.execution.json) {

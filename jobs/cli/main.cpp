@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "engine/lack_of_memory.hpp"
 #include "io/files/error.hpp"
 #include "io/files/small_file.hpp"
 #include "jobs/cli/command.hpp"
@@ -116,6 +117,9 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   occupy_standard_streams();
+  semigeo::engine::end_for_lack_of_memory(
+      "semigeo: there is not enough memory; free some, and run the same command again\n",
+      semigeo::jobs::cli::kSomeFailed);
   const int exit_code = run(argc, argv);
   if (results_were_written()) return exit_code;
   semigeo::jobs::cli::complain(

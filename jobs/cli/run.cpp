@@ -6,6 +6,7 @@
 
 #include "io/files/atomic_file.hpp"
 #include "io/files/error.hpp"
+#include "io/files/read_error.hpp"
 #include "io/scans/scan_reader.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/leftovers_report.hpp"
@@ -37,9 +38,8 @@ struct RunOptions {
 class Pruning {
  public:
   explicit Pruning(const RunOptions& options) : options_(options) {
-    std::error_code ignored;
     std::ranges::copy_if(options.inputs, std::back_inserter(folders_),
-                         [&](const fs::path& input) { return fs::is_directory(input, ignored); });
+                         [](const fs::path& input) { return io::is_folder(input); });
   }
 
   /// Looks for leftovers when it is known which names the scans of the run have.
@@ -96,7 +96,7 @@ class Pruning {
 void prepare_archive(const fs::path& archive, const std::string& effective_config,
                      const std::vector<PlannedJob>& plan) {
   const fs::path config_file = archive / "semigeo.toml";
-  if (!fs::exists(config_file)) io::write_file_atomically(config_file, effective_config);
+  if (!io::is_there(config_file)) io::write_file_atomically(config_file, effective_config);
   record_sources(archive, plan);
 }
 

@@ -22,8 +22,12 @@ TemporaryFolder::TemporaryFolder() {
 }
 
 TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
+  // No later run would find it, so what fails once is tried again.
+  std::error_code error;
+  for (int tries = 0; tries < 3; ++tries) {
+    fs::remove_all(path_, error);
+    if (!error) return;
+  }
 }
 
 }  // namespace semigeo::jobs::cli

@@ -6,6 +6,7 @@
 
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
+#include "io/files/read_error.hpp"
 #include "io/library/hash_library.hpp"
 #include "jobs/archive/path_text.hpp"
 #include "jobs/kinds/given_names.hpp"
@@ -73,9 +74,8 @@ class LibraryKind final : public TypedJobKind<LibraryJobData, LibraryJobResult> 
     const auto run_keys = keep_models_with_runs(library.models, job.input, job.output, keys);
     job.key = library_key(run_keys, library.parameters);
     if (is_complete(job)) return true;
-    std::error_code ignored;
     for (const fs::path& partition : partition_paths(job, library.partitions))
-      if (!fs::exists(partition, ignored))
+      if (!io::is_there(partition))
         throw io::Error(partition, "", "is missing: " + job.name + " is made of it",
                         "see why its job failed, and run again");
     return false;

@@ -57,8 +57,7 @@ void judge_again(PlannedJob& planned, const Verified& verified) {
 
 LibraryPlace place_of(const fs::path& library) {
   const fs::path folder = library.parent_path();
-  std::error_code ignored;
-  if (library.filename() == kArchiveLibrary && fs::is_directory(folder / "scans", ignored))
+  if (library.filename() == kArchiveLibrary && io::is_folder(folder / "scans"))
     return place_of_archive(folder);
   fs::path parts = library;
   parts += ".parts";

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "io/files/error.hpp"
+#include "io/files/read_error.hpp"
 #include "io/files/utf8.hpp"
 #include "io/library/hash_library.hpp"
 #include "jobs/archive/sources.hpp"
@@ -39,11 +40,10 @@ fs::path recognised_path(const fs::path& folder, const std::string& name) {
 }
 
 SearchedLibrary searched_library(const fs::path& file_or_archive) {
-  std::error_code error;
   const fs::path given = fs::absolute(file_or_archive).lexically_normal();
-  const bool is_folder = fs::is_directory(given, error);
+  const bool is_folder = io::is_folder(given);
   const fs::path path = is_folder ? place_of_archive(given).library : given;
-  if (!fs::exists(path, error))
+  if (!io::is_there(path))
     throw io::Error(path, "", is_folder ? "the folder has no hash library" : "no such library",
                     is_folder ? "build it: semigeo library build " + file_or_archive.string()
                               : "check --library");

@@ -15,6 +15,7 @@
 #include "jobs/archive/digest_cache.hpp"
 #include "jobs/archive/path_text.hpp"
 #include "jobs/archive/scan_size.hpp"
+#include "jobs/archive/sources.hpp"
 #include "jobs/kinds/recognise_plan.hpp"
 #include "jobs/plan/plan.hpp"
 #include "jobs/plan/typed_job_kind.hpp"
@@ -104,7 +105,7 @@ class PageKind : public TypedJobKind<Data, Result> {
   /// Removes the page of something that is gone.
   void remove_stale_output(const Job& job) const override {
     std::error_code ignored;
-    if (!fs::exists(job.input, ignored)) fs::remove(job.output, ignored);
+    if (is_gone(job.input)) fs::remove(job.output, ignored);
   }
 
  private:
@@ -122,8 +123,7 @@ class ScanPageKind final : public PageKind<PageJobData, PageResult> {
   /// Takes the key of the dataset that is there now. Throws io::Error if there is none.
   bool resolve_inputs(Job& job, OutputKeys&) const override {
     job.key.clear();
-    std::error_code ignored;
-    if (!fs::exists(job.input, ignored)) throw missing_input(job.output, "dataset");
+    if (!io::is_there(job.input)) throw missing_input(job.output, "dataset");
     job.key = key_of_scan_page(io::read_origin(job.input).job_key, job.input);
     return is_complete(job);
   }
@@ -158,8 +158,13 @@ std::set<fs::path> models_in(const json& recognised, std::initializer_list<const
 
 /// Returns a text that changes when the file of a scene does.
 std::string state_of_scene(const fs::path& scene) {
-  const std::optional<FileStamp> stamp = stamp_of(io::outer_file(scene));
-  if (!stamp) return "no scene";
+  const fs::path file = io::outer_file(scene);
+  std::optional<FileStamp> stamp = stamp_of(file);
+  if (!stamp) {
+    if (!io::is_there(file)) return "no scene";
+    stamp = stamp_of(file);
+  }
+  if (!stamp) return "no file";
   return "scene of " + std::to_string(stamp->size) + " bytes, " + std::to_string(stamp->modified);
 }
 
@@ -173,8 +178,7 @@ class ScenePageKind final : public PageKind<SceneJobData, PageResult> {
 
   bool resolve_inputs(Job& job, OutputKeys&) const override {
     job.key.clear();
-    std::error_code ignored;
-    if (!fs::exists(job.input, ignored)) throw missing_input(job.output, "recognised file");
+    if (!io::is_there(job.input)) throw missing_input(job.output, "recognised file");
     job.key = key_of(job);
     return is_complete(job);
   }
@@ -184,13 +188,12 @@ class ScenePageKind final : public PageKind<SceneJobData, PageResult> {
   static std::string key_of(const Job& job) {
     const SceneJobData& scene = data(job);
     const json recognised = read_recognised(job.input);
-    std::error_code ignored;
     std::string content = state_of_scene(scene.scene);
     try {
       content.append("\n").append(recognised.at("job_key").get<std::string>());
       for (const fs::path& dataset : models_in(recognised, {"objects", "ranking"}, scene.archive))
-        content.append("\n").append(fs::exists(dataset, ignored) ? io::read_origin(dataset).job_key
-                                                                 : "none");
+        content.append("\n").append(io::is_there(dataset) ? io::read_origin(dataset).job_key
+                                                          : "none");
     } catch (const io::Error& e) {
       io::rethrow_if_unread(e);
       content.append("\n").append(e.what());
@@ -263,10 +266,10 @@ class ReportKind final : public PageKind<ReportJobData, ReportJobResult> {
                   .plural = "reports",
                   .merges_files = true}) {}
 
+  /// Leaves the key empty if something cannot be read.
   bool resolve_inputs(Job& job, OutputKeys&) const override {
-    job.key =
-        page_key(kIndexVersion, pages().index, archive_digest(job.input, job.output.parent_path()));
-    return is_complete(job);
+    job.key = key_of(job);
+    return !job.key.empty() && is_complete(job);
   }
 
   Estimate estimate(const PlannedJob& planned, const EstimateContext& context) const override {
@@ -282,12 +285,15 @@ class ReportKind final : public PageKind<ReportJobData, ReportJobResult> {
     remove_pages_of_what_is_gone(job);
     json document = archive_report(job.input, job.output.parent_path());
     document["version"] = SEMIGEO_VERSION;
-    // What could not be read this time may be read the next time.
-    const bool all_was_read = document["unread"] == 0;
+    const json unread = document["unread"];
     document.erase("unread");
-    write_page(job.output,
-               all_was_read ? job.key : page_key(kIndexVersion, pages().index, "unread"),
-               page_with(pages().index, document));
+    std::string key = job.key.empty() ? key_of(job) : job.key;
+    // What could not be read this time may be read the next time.
+    if (!unread.empty() || key.empty()) key = page_key(kIndexVersion, pages().index, "unread");
+    write_page(job.output, key, page_with(pages().index, document));
+    if (!unread.empty())
+      throw io::Error(job.output, "",
+                      "lacks what cannot be read: " + unread.front().get<std::string>());
     return ReportJobResult{std::ssize(document["scans"]), std::ssize(document["failures"])};
   }
 
@@ -301,6 +307,12 @@ class ReportKind final : public PageKind<ReportJobData, ReportJobResult> {
   }
 
  private:
+  /// Returns the key of the first page, or an empty text if something cannot be read.
+  static std::string key_of(const Job& job) {
+    const std::string digest = archive_digest(job.input, job.output.parent_path());
+    return digest.empty() ? "" : page_key(kIndexVersion, pages().index, digest);
+  }
+
   static void remove_pages_of_what_is_gone(const Job& job) {
     if (data(job).index_only) return;
     const fs::path folder = job.output.parent_path();

@@ -261,8 +261,7 @@ class SurfaceKind final : public TypedJobKind<SurfaceJobData, SurfaceJobResult> 
   }
 
   bool has_all_outputs(const Job& job) const override {
-    std::error_code ignored;
-    return fs::exists(io::sidecar_of(job.output), ignored);
+    return io::is_there(io::sidecar_of(job.output));
   }
 
   void discard_output(const Job& job) const override {

@@ -42,8 +42,7 @@ class TripletsKind final : public TypedJobKind<TripletsJobData, TripletsJobResul
   /// Takes the key of the dataset that is there now. Throws io::Error if there is none.
   bool resolve_inputs(Job& job, OutputKeys&) const override {
     job.key.clear();
-    std::error_code ignored;
-    if (!fs::exists(job.input, ignored)) throw missing_input(job.output, "dataset");
+    if (!io::is_there(job.input)) throw missing_input(job.output, "dataset");
     job.key = triplets_key(job.name, io::read_origin(job.input).job_key, data(job).parameters);
     return is_complete(job);
   }

@@ -4,7 +4,6 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
-#include <csignal>
 #include <map>
 #include <new>
 #include <nlohmann/json.hpp>
@@ -20,6 +19,7 @@
 #include "io/files/base64.hpp"
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
+#include "io/files/input_file.hpp"
 #include "io/files/read_error.hpp"
 #include "jobs/archive/dataset_files.hpp"
 #include "jobs/archive/in_children.hpp"
@@ -74,8 +74,7 @@ nlohmann::json record_of(const fs::path& path, const std::string& icon) {
   record["levels"] = dataset.level_count();
   record["level"] = level;
   record["features"] = dataset.level(static_cast<int>(level)).features.total();
-  std::error_code error;
-  if (const auto bytes = fs::file_size(path, error); !error) record["dataset_bytes"] = bytes;
+  record["dataset_bytes"] = io::InputFile(path).size();
   const auto drawn = [&] {
     const std::string png = thumbnail_of(dataset);
     return io::base64(std::as_bytes(std::span(png)));
@@ -115,8 +114,9 @@ std::vector<ReadDataset> read_datasets(const std::vector<fs::path>& datasets,
   std::vector<ReadDataset> read(datasets.size());
   for (std::size_t i = 0; i < datasets.size(); ++i) {
     const std::string& text = results[i].text;
-    read[i].may_be_whole = results[i].signal == SIGKILL || text.starts_with(kUnread);
-    if (results[i].exit_code != 0 || text.empty())
+    const bool ended = results[i].exit_code == 0 && !text.empty();
+    read[i].may_be_whole = ended ? text.front() == kUnread : !tells_of_damage(results[i]);
+    if (!ended)
       read[i].problem = unfinished_reading(results[i], datasets[i]).what();
     else if (text.front() == kRead)
       read[i].record = nlohmann::json::parse(text.substr(1));
@@ -187,13 +187,14 @@ class ReportReader {
     }
     std::ranges::stable_sort(scans_, {}, [](const nlohmann::json& s) { return order_of(s); });
     nlohmann::json scenes = scenes_of_archive();
-    const auto unread = std::ranges::count_if(read, &ReadDataset::may_be_whole) + unread_scenes_;
+    for (const ReadDataset& dataset : read)
+      if (dataset.may_be_whole) unread_.push_back(dataset.problem);
     return {{"archive", escaped(fs::weakly_canonical(archive_).filename().string())},
             {"run", run()},
             {"failures", failures()},
             {"scans", scans_},
             {"scenes", std::move(scenes)},
-            {"unread", unread}};
+            {"unread", unread_}};
   }
 
  private:
@@ -276,8 +277,7 @@ class ReportReader {
 
   /// Adds the page of a scan or a scene, if it is there.
   void add_page(nlohmann::json& record, const fs::path& page) const {
-    std::error_code ignored;
-    if (!fs::exists(page, ignored)) return;
+    if (!io::is_there(page)) return;
     record["page"] =
         url_of(page.parent_path().filename().string() + "/" + page.filename().string());
   }
@@ -303,7 +303,7 @@ class ReportReader {
       add_page(record, scene_page_path(folder_, name));
     } catch (const io::ReadError& e) {
       add_reason(record, e.what());
-      ++unread_scenes_;
+      unread_.push_back(e.what());
     } catch (const io::Error& e) {
       add_reason(record, e.what());
     } catch (const nlohmann::json::exception&) {
@@ -320,16 +320,29 @@ class ReportReader {
   std::vector<fs::path> datasets_;
   RunHistory history_;
   std::vector<nlohmann::json> scans_;
-  std::int64_t unread_scenes_ = 0;
-  std::map<std::string, std::string> titles_;  ///< Titles of the scans by their names.
+  nlohmann::json unread_ = nlohmann::json::array();  ///< Sentences about what may be whole.
+  std::map<std::string, std::string> titles_;        ///< Titles of the scans by their names.
 };
 
-/// Returns the key of a page, or an empty text.
+/// Returns the key of a page, or an empty text if there is none. Throws io::ReadError if the system
+/// refuses to read it.
 std::string key_of_page(const fs::path& page) {
   try {
     return read_page_key(page);
-  } catch (const io::Error&) {
+  } catch (const io::Error& e) {
+    io::rethrow_if_unread(e);
     return "";
+  }
+}
+
+/// Returns what says whether a dataset is another one. Throws io::ReadError if the system refuses
+/// to read it.
+std::string state_of_dataset(const fs::path& dataset) {
+  try {
+    return io::read_origin(dataset).job_key;
+  } catch (const io::Error& e) {
+    io::rethrow_if_unread(e);
+    return e.what();
   }
 }
 
@@ -343,30 +356,27 @@ std::vector<std::string> scene_names(const fs::path& archive) {
   return names;
 }
 
-std::string archive_digest(const fs::path& archive, const fs::path& folder) {
+std::string archive_digest(const fs::path& archive, const fs::path& folder) try {
   const std::vector<fs::path> datasets = dataset_files(archive / "scans");
   const Sources sources = Sources::read(archive);
   const RunHistory history = read_history(archive, shown_names(datasets, sources));
   std::string content = history.digest + shown_state(status_of(archive), history);
   const auto add = [&](const std::string& text) { content.append("\n").append(text); };
-  std::error_code ignored;
-  if (datasets.empty() && !fs::exists(archive / kJournalName, ignored)) throw no_archive(archive);
+  if (datasets.empty() && !io::is_there(archive / kJournalName)) throw no_archive(archive);
   for (const fs::path& dataset : datasets) {
     add(dataset.filename().string());
-    try {
-      add(io::read_origin(dataset).job_key);
-    } catch (const io::Error& e) {
-      add(e.what());
-    }
+    add(state_of_dataset(dataset));
     add(key_of_page(scan_page_path(folder, dataset.stem().string())));
   }
   for (const auto& [name, source] : sources.by_name()) add(name);
   for (const std::string& name : scene_names(archive)) {
     add(name);
     add(key_of_page(scene_page_path(folder, name)));
-    add(std::to_string(fs::file_size(archive / "recognised" / (name + ".json"), ignored)));
+    add(std::to_string(io::InputFile(archive / "recognised" / (name + ".json")).size()));
   }
   return io::xxh3_of_text(content);
+} catch (const io::ReadError&) {
+  return "";
 }
 
 nlohmann::json archive_report(const fs::path& archive, const fs::path& folder) {

@@ -23,8 +23,8 @@ inline constexpr std::string_view kIndexVersion = "index 2";
 ///             last run. Failures come first, then names in order. Values that are not known are
 ///             absent.
 ///   scenes    a record for each recognised file, with the models that were found
-///   unread    number of datasets and recognised files that the system refused to read and that may
-///             be whole
+///   unread    a sentence for each dataset and recognised file that the system refused to read and
+///             that may be whole
 ///
 /// `folder` is that of the report: what has a page in it has the address of the page. Time and
 /// memory are those of the last job that made the dataset. Reads attributes and the sizes of level
@@ -34,7 +34,8 @@ nlohmann::json archive_report(const std::filesystem::path& archive,
                               const std::filesystem::path& folder);
 
 /// Returns a hash of the keys of all that `archive_report` shows. Reads a few kB of each dataset
-/// and the journal. Throws io::Error as `archive_report` does.
+/// and the journal. The text is empty if the system refuses to read something. Throws other errors
+/// as `archive_report` does.
 std::string archive_digest(const std::filesystem::path& archive,
                            const std::filesystem::path& folder);
 

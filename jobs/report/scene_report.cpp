@@ -68,8 +68,7 @@ PlacedSurface read_scene(const SceneFiles& files, const std::string& xxh3, doubl
 }
 
 PlacedSurface read_model(const fs::path& path, const std::string& digest) {
-  std::error_code ignored;
-  if (!fs::exists(path, ignored))
+  if (!io::is_there(path))
     throw io::Error(path, "", "is not in this archive", "make the report of the library's archive");
   const io::Dataset dataset(path);
   if (dataset.digest() != digest)

@@ -72,6 +72,7 @@ std::string to_line(const JobReply& reply) {
     object["peak_bytes"] = reply.peak_bytes;
     if (reply.kind == JobReply::Kind::kDone) object["done"] = reply.result;
     if (reply.kind == JobReply::Kind::kFailed) object["failed"] = reply.error;
+    if (reply.last) object["last"] = true;
     if (reply.write_error != 0) object["write_error"] = reply.write_error;
   }
   // What the file system says need not be UTF-8.
@@ -92,6 +93,7 @@ JobReply job_reply_from(const std::string& line) {
       reply.kind = JobReply::Kind::kWorked;
       return reply;
     }
+    reply.last = object.value("last", false);
     object.at("cpu_seconds").get_to(reply.cpu_seconds);
     object.at("peak_bytes").get_to(reply.peak_bytes);
     return reply;

@@ -30,6 +30,7 @@ struct JobReply {
   nlohmann::json result = {};  ///< Result of a job that is done, as its kind writes it, or null.
   double cpu_seconds = 0;      ///< CPU time of this job.
   double peak_bytes = 0;       ///< The most memory that the process had resident during the job.
+  bool last = false;           ///< The process does no more jobs.
   int write_error = 0;         ///< The errno if the output could not be written; otherwise 0.
 };
 

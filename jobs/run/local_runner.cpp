@@ -7,9 +7,11 @@
 #include <cstring>
 #include <set>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 #include "engine/descriptor.hpp"
+#include "engine/lack_of_memory.hpp"
 #include "engine/machine.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/files/error.hpp"
@@ -76,6 +78,7 @@ std::string cause_of(const ChildProcesses::Ended& ended, double timeout) {
     return "was killed (signal 9): by hand, or by the system because memory ran out";
   if (ended.signal != 0)
     return "crashed (signal " + std::to_string(ended.signal) + ", " + strsignal(ended.signal) + ")";
+  if (ended.exit_code == engine::kNoMemoryCode) return "got no memory from the system";
   return "ended with exit code " + std::to_string(ended.exit_code) + " instead of an answer";
 }
 
@@ -97,7 +100,21 @@ void LocalRunner::start(const std::vector<JobStart>& jobs, const Say&) {
   for (const JobStart& job : jobs) start(job);
 }
 
-void LocalRunner::start(const JobStart& start) {
+/// A system that has no process, descriptor or memory for a job now may have one soon, and other
+/// jobs are running. So the job counts as lost.
+void LocalRunner::start(const JobStart& start) try {
+  hand_over(start);
+} catch (const std::system_error& e) {
+  const Job& job = start.planned->job;
+  const std::string cause = std::string("could not be started (") + e.what() + ")";
+  unstarted_.push_back({.number = start.number,
+                        .wanted = false,
+                        .cause = cause,
+                        .error = sentence_about(job, cause, {}),
+                        .seconds = 0});
+}
+
+void LocalRunner::hand_over(const JobStart& start) {
   if (idle_.empty()) idle_.push_back(start_worker());
   const Child child = idle_.back();
   idle_.pop_back();
@@ -146,6 +163,11 @@ double LocalRunner::timeout_of(const JobStart& job) const {
 }
 
 RunnerEvent LocalRunner::wait() {
+  if (!unstarted_.empty()) {
+    JobLost lost = std::move(unstarted_.front());
+    unstarted_.pop_front();
+    return lost;
+  }
   while (true) {
     const ChildProcesses::Event event = children_.wait();
     if (const auto* line = std::get_if<ChildProcesses::Line>(&event)) {
@@ -184,7 +206,11 @@ RunnerEvent LocalRunner::answered(std::map<Child, Running>::iterator at, const s
   outcome.attempts = job.attempt;
   running_.erase(at);
   children_.restart_clocks(child, 0, 0);
-  idle_.push_back(child);
+  if (reply.last) {
+    children_.close_input(child);
+  } else {
+    idle_.push_back(child);
+  }
   return JobAnswered{job.number, std::move(outcome), reply.worked};
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -51,6 +52,7 @@ class LocalRunner : public Runner {
     RunClock clock;
   };
   void start(const JobStart& job);
+  void hand_over(const JobStart& job);
   Child start_worker();
   RunnerEvent answered(std::map<Child, Running>::iterator at, const std::string& line);
   JobLost lost(std::map<Child, Running>::iterator at, const engine::ChildProcesses::Ended& ended);
@@ -61,6 +63,7 @@ class LocalRunner : public Runner {
   const ExecutorOptions options_;
   std::map<Child, Running> running_;
   std::vector<Child> idle_;
+  std::deque<JobLost> unstarted_;  ///< Jobs for which there was no process.
   bool ending_ = false;
   engine::ChildProcesses children_;
   Drain drain_;

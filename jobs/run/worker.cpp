@@ -20,6 +20,7 @@
 
 #include "engine/descriptor.hpp"
 #include "io/files/error.hpp"
+#include "io/files/read_error.hpp"
 #include "io/files/write_error.hpp"
 #include "jobs/run/job_line.hpp"
 #include "jobs/run/process_usage.hpp"
@@ -225,6 +226,7 @@ JobReply do_job(const JobRequest& request, JobLog& log, Reporter& reporter) {
     reply.kind = JobReply::Kind::kDone;
   } catch (const std::bad_alloc&) {
     limit_address_space(0);
+    reply.last = true;
     reply.error = subject_of(request.job).string() + ": needs more than the " +
                   std::to_string(request.address_space_bytes >> 20) +
                   " MiB of memory that a job may have; give --memory-per-job more" +
@@ -232,6 +234,10 @@ JobReply do_job(const JobRequest& request, JobLog& log, Reporter& reporter) {
   } catch (const io::WriteError& e) {
     reply.error = e.what();
     reply.write_error = e.code();
+    reply.last = e.code() == ENOMEM;
+  } catch (const io::ReadError& e) {
+    reply.error = e.what();
+    reply.last = e.code() == ENOMEM;
   } catch (const io::Error& e) {
     reply.error = e.what();
   } catch (
@@ -275,6 +281,7 @@ int serve_jobs(int requests, int answers, const JobKinds& kinds) {
     Reporter reporter(answers);
     const JobReply reply = do_job(request, log, reporter);
     if (!write_line(answers, to_line(reply))) return 0;  // the reader has ended
+    if (reply.last) return 0;
   }
   return 0;
 }

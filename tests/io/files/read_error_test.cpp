@@ -92,6 +92,10 @@ TEST_F(ReadErrorTest, WhatCannotBeKnownIsNotAbsent) {
   EXPECT_FALSE(is_there(folder_ / "gone"));
   EXPECT_FALSE(is_there(file_ / "in"));
   EXPECT_THROW(is_there(circle_), ReadError);
+  EXPECT_TRUE(is_folder(folder_.path()));
+  EXPECT_FALSE(is_folder(file_));
+  EXPECT_FALSE(is_folder(folder_ / "gone"));
+  EXPECT_THROW(is_folder(circle_), ReadError);
 }
 
 }  // namespace

@@ -157,6 +157,21 @@ TEST_F(ArchiveReportTest, ADatasetThatCannotBeReadIsAFailure) {
   EXPECT_EQ(document["failures"][0]["job"], "a.obj");
 }
 
+TEST_F(ArchiveReportTest, WhatTheSystemRefusesToReadIsTold) {
+  make_dataset("a.obj", "a.obj");
+  EXPECT_TRUE(report()["unread"].empty());
+  const std::string whole = archive_digest(folder_.path(), folder_ / "report");
+  EXPECT_NE(whole, "");
+  const fs::path circle = folder_ / "scans" / "b.obj.vtkhdf";
+  fs::create_symlink(circle, circle);
+  const nlohmann::json document = report();
+  ASSERT_EQ(document["unread"].size(), 1);
+  EXPECT_TRUE(document["unread"][0].get<std::string>().starts_with(circle.string() + ": "));
+  EXPECT_EQ(archive_digest(folder_.path(), folder_ / "report"), "");
+  fs::remove(circle);
+  EXPECT_EQ(archive_digest(folder_.path(), folder_ / "report"), whole);
+}
+
 TEST_F(ArchiveReportTest, ScansHaveTheirOwnNames) {
   make_dataset("day_a.obj--1", "día/<img>.obj");
   Sources sources;

@@ -210,8 +210,9 @@ TEST(JobLineTest, EveryFieldOfAResultArrives) {
                            .peak_bytes = 1e12 + 1};
     const std::string line = to_line(sent);
     EXPECT_EQ(line.find('\n'), std::string::npos);
-    const auto [kind, worked, error, read, cpu_seconds, peak_bytes, write_error] =
+    const auto [kind, worked, error, read, cpu_seconds, peak_bytes, last, write_error] =
         job_reply_from(line);
+    EXPECT_FALSE(last);
     EXPECT_EQ(write_error, 0);
     EXPECT_EQ(kind, JobReply::Kind::kDone);
     EXPECT_EQ(worked, 123);
@@ -269,7 +270,9 @@ TEST(JobLineTest, AFailureSaysWhyWhateverTheReason) {
                                                 .result = {},
                                                 .cpu_seconds = 0.5,
                                                 .peak_bytes = 4096,
+                                                .last = true,
                                                 .write_error = ENOSPC}));
+  EXPECT_TRUE(read.last);
   EXPECT_EQ(read.write_error, ENOSPC);
   EXPECT_EQ(read.kind, JobReply::Kind::kFailed);
   EXPECT_EQ(read.worked, 7);

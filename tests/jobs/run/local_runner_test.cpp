@@ -288,6 +288,16 @@ TEST_F(FaultTest, AProgramThatIsNoWorkerFailsEachJob) {
   }
 }
 
+TEST_F(FaultTest, WhatCannotBeStartedFailsEachJob) {
+  options_.program = folder_ / "gone";
+  for (const JobOutcome& outcome : run()) {
+    EXPECT_EQ(outcome.state, kFailed);
+    EXPECT_TRUE(holds(outcome.error, "could not be started (cannot start " +
+                                         options_.program.string() + ": No such file"))
+        << outcome.error;
+  }
+}
+
 TEST_F(FaultTest, AfterTheFirstSignalRunningJobsEndAndNoMoreStart) {
   options_.threads = 1;
   listener_.on_start = [] { raise(SIGTERM); };
