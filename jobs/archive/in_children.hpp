@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "engine/fork_child.hpp"
@@ -20,7 +21,8 @@ bool has_crashed(const engine::ForkedResult& result);
 /// reads files that may make a library crash or loop. As many run side by side as `total` has cores
 /// and memory for. `bytes(i)` is the memory that each is expected to need. One that needs more than
 /// there is runs alone. `cpu_seconds(i)` limits the time of each. One that crashes is tried once
-/// more: only damage crashes a library each time. Returns how each has ended, in order.
+/// more: only damage crashes a library each time. Returns how each has ended, in order. Throws
+/// std::system_error if there can be no child although none is running.
 template <typename Work, typename Seconds, typename Bytes>
 std::vector<engine::ForkedResult> in_children(std::size_t count, engine::Amount total,
                                               const Work& work, const Seconds& cpu_seconds,
@@ -30,8 +32,15 @@ std::vector<engine::ForkedResult> in_children(std::size_t count, engine::Amount 
   std::vector<engine::ForkedChild> children;
   std::vector<engine::ForkedResult> results;
   for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t next; (next = children.size()) < count && resources.admit(amount(next));)
-      children.emplace_back([&work, next] { return std::string(work(next)); }, cpu_seconds(next));
+    for (std::size_t next; (next = children.size()) < count && resources.admit(amount(next));) {
+      try {
+        children.emplace_back([&work, next] { return std::string(work(next)); }, cpu_seconds(next));
+      } catch (const std::system_error&) {
+        if (next == i) throw;
+        resources.release(amount(next));  // there may be a process when another has ended
+        break;
+      }
+    }
     results.push_back(children[i].wait());
     if (has_crashed(results.back()))
       results.back() =

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "io/files/error.hpp"
+#include "io/files/read_error.hpp"
 #include "jobs/archive/archive_lock.hpp"
 #include "jobs/cli/command.hpp"
 #include "jobs/cli/json_output.hpp"
@@ -35,15 +36,13 @@ void print_leftovers(const PruneOptions& options, const std::vector<Leftover>& l
     return;
   }
   print(action, ": ", counts_in_words(leftovers), "\n");
-  std::error_code ignored;
-  if (fs::exists(options.archive / "library.h5", ignored))
+  if (io::is_there(options.archive / "library.h5"))
     print("The library keeps their models until it is made anew: semigeo library build ",
           options.archive, ", or run --library\n");
 }
 
 int prune(const PruneOptions& options) {
-  std::error_code ignored;
-  if (!fs::is_directory(options.archive, ignored)) {
+  if (!io::is_folder(options.archive)) {
     complain(options.archive, ": is no archive; give the folder that was --output of a run");
     return kUsage;
   }

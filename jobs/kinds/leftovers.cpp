@@ -9,6 +9,7 @@
 #include "io/dataset/xdmf.hpp"
 #include "io/files/container.hpp"
 #include "io/files/error.hpp"
+#include "io/files/read_error.hpp"
 #include "jobs/archive/digest_cache.hpp"
 #include "jobs/archive/find_scans.hpp"
 #include "jobs/archive/links.hpp"
@@ -71,12 +72,13 @@ Leftover recognised_leftover(const fs::path& archive, const std::string& name,
 std::vector<fs::path> resolved(const std::vector<fs::path>& folders) {
   std::vector<fs::path> result;
   for (const fs::path& folder : folders) {
-    std::error_code error;
-    const fs::path path = fs::canonical(folder, error);
-    if (error || !fs::is_directory(path, error))
+    if (!io::is_folder(folder))
       throw io::Error(folder, "", "there is no such folder, so nothing is removed",
                       "see that its disk is mounted; if the folder itself was removed, name the "
                       "folder above it");
+    std::error_code error;
+    const fs::path path = fs::canonical(folder, error);
+    if (error) throw io::open_error(folder, error.value());
     result.push_back(path);
     std::ranges::move(folders_behind_links(path), std::back_inserter(result));
   }

@@ -1,11 +1,10 @@
-"""Every call of the C library that can fail fails once in a small run, a library, a recognition and a report: the
-program says so or goes on, nothing broken stands under a final name, nothing is left over, and the same command
-again ends with the bytes of an undisturbed one. `python3 -B faults_test.py PROGRAM LIBRARY [unittest's arguments]`,
-where LIBRARY is built from counted_calls.cpp and its neighbours.
+"""Every call of the C library that can fail fails once in six small commands, from a run to an export: the program
+says so or goes on, nothing broken stands under a final name, nothing is left over, and the same command again ends
+with the bytes of an undisturbed one. `python3 -B faults_test.py PROGRAM LIBRARY [unittest's arguments]`, where LIBRARY
+is built from counted_calls.cpp and its neighbours.
 
 SEMIGEO_FAULTS_SAMPLE is the number of calls of each function and scenario that fail, or `all`.
-SEMIGEO_FAULTS_ONLY, such as `run`, `run.write` or `run.write.12.ENOSPC`, says which, and SEMIGEO_FAULTS_NOT names a
-function that does not fail."""
+SEMIGEO_FAULTS_ONLY, such as `run`, `run.write` or `run.write.12.ENOSPC`, says which."""
 
 import concurrent.futures
 import errno
@@ -26,7 +25,6 @@ from support import PROGRAM, RECORDS, boulder, write_ply  # noqa: E402
 LIBRARY = Path(sys.argv.pop(1)).resolve()
 SAMPLE = os.environ.get("SEMIGEO_FAULTS_SAMPLE", "1")
 ONLY = os.environ.get("SEMIGEO_FAULTS_ONLY", "").split(".")
-NOT = os.environ.get("SEMIGEO_FAULTS_NOT")
 ALLOCATIONS = 300  # of each scenario, if all calls are to fail: there are many thousands
 TIMEOUT = 120
 STATE_BYTES = 4096
@@ -136,8 +134,6 @@ def faults(scenario, counts):
     """FUNCTION, N, ERROR of all cases of a scenario."""
     found = []
     for function, errors in FUNCTIONS.items():
-        if function == NOT:
-            continue
         for turn, number in enumerate(numbers_to_fail(counts[function], function)):
             # A sample gives each error its turn.
             chosen = errors if SAMPLE == "all" else (errors[(turn + len(found)) % len(errors)],)

@@ -6,13 +6,13 @@
 
 namespace semigeo::tests {
 
-/// While it lives, this process can open no more files (EMFILE).
+/// While it lives, this process can open no more than `more` files (EMFILE).
 class DescriptorLimit {
  public:
-  DescriptorLimit() {
+  explicit DescriptorLimit(int more = 0) {
     getrlimit(RLIMIT_NOFILE, &before_);
     const int next = open("/dev/null", O_RDONLY | O_CLOEXEC);  // the lowest that is free
-    const rlimit limit{static_cast<rlim_t>(next), before_.rlim_max};
+    const rlimit limit{static_cast<rlim_t>(next + more), before_.rlim_max};
     close(next);
     setrlimit(RLIMIT_NOFILE, &limit);
   }

@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cerrno>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <thread>
 
 #include "io/files/error.hpp"
+#include "io/files/read_error.hpp"
 #include "io/hdf5/array_reader.hpp"
 #include "io/hdf5/complete_file.hpp"
 #include "tests/support/file_size_limit.hpp"
@@ -253,6 +255,23 @@ TEST(Hdf5, ErrorsNameTheFileAndHdf5sReason) {
     file.create_group("/a");
   });
   EXPECT_TRUE(mentions(twice, "shown.h5: /a: ")) << twice;
+}
+
+TEST(Hdf5, WhatTheSystemRefusedIsNotDamaged) {
+  const tests::TemporaryFolder folder;
+  Hdf5File::create(folder / "a.h5").close();
+  const Hdf5File file = Hdf5File::open(folder / "a.h5");
+  for (const int code : {ENOMEM, EIO}) {
+    errno = code;  // as a call within HDF5 leaves it
+    EXPECT_THROW(file.refuse("/a", "is not what it was"), ReadError);
+  }
+  const std::string missing = message_of([&] { file.links("/gone"); });
+  EXPECT_TRUE(mentions(missing, "is damaged")) << missing;
+  errno = EIO;
+  EXPECT_THROW(file.links("/gone"), ReadError);
+  EXPECT_THROW(file.links("/gone"), Error);  // the errno is forgotten
+  errno = ENOENT;
+  EXPECT_TRUE(mentions(message_of([&] { file.refuse("/a", "is odd"); }), "is damaged"));
 }
 
 TEST(Hdf5, PrintsNothingInAnyThread) {

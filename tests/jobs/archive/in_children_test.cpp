@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "engine/lack_of_memory.hpp"
+#include "tests/support/descriptor_limit.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace semigeo::jobs {
@@ -88,6 +89,14 @@ TEST(InChildrenTest, OnlyACrashAndAnEndlessLoopTellOfDamage) {
     EXPECT_TRUE(problem.starts_with("x: was not read to its end: ")) << problem;
     EXPECT_EQ(problem.find("remove"), std::string::npos) << problem;
   }
+}
+
+TEST(InChildrenTest, WhatCannotBeStartedNowIsStartedWhenAnotherHasEnded) {
+  const tests::DescriptorLimit limit(2);  // enough for the pipe of one child
+  const auto results = in_children(
+      3, 3, [](std::size_t i) { return std::to_string(i); }, [](std::size_t) { return 60.0; });
+  ASSERT_EQ(results.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(results[i].text, std::to_string(i));
 }
 
 TEST(InChildrenTest, NoMemoryIsWhatItIs) {
