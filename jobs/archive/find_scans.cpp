@@ -14,6 +14,7 @@
 #include "io/files/container.hpp"
 #include "io/files/error.hpp"
 #include "io/files/lower_case.hpp"
+#include "io/files/read_error.hpp"
 #include "io/scans/companions.hpp"
 #include "io/scans/scan_reader.hpp"
 #include "jobs/archive/containers.hpp"
@@ -68,6 +69,12 @@ FolderId id_of(const fs::path& folder) {
   struct stat status {};
   if (stat(folder.c_str(), &status) != 0) return {};
   return {status.st_dev, status.st_ino};
+}
+
+/// Returns whether an error is that of a link to nothing.
+bool leads_nowhere(const std::error_code& error) {
+  return error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory ||
+         error == std::errc::too_many_symbolic_link_levels;
 }
 
 /// Returns whether a member is `within`, or in the folder of this name; "" is the whole container.
@@ -146,6 +153,7 @@ class Search {
   void add_input(const fs::path& input) {
     std::error_code error;
     const fs::file_status status = fs::status(input, error);
+    if (status.type() == fs::file_type::none) throw io::open_error(input, error.value());
     if (fs::is_directory(status)) {
       search_folder(input);
     } else if (fs::exists(status)) {
@@ -217,8 +225,9 @@ class Search {
   }
 
   void add_entry(Folder& search, const fs::directory_entry& entry, bool counts) {
+    std::error_code error;
     std::error_code ignored;
-    if (entry.is_directory(ignored)) {
+    if (entry.is_directory(error)) {
       if (!enters(entry.path())) return;
       if (entry.is_symlink(ignored)) {
         search.links.insert(entry.path());
@@ -227,6 +236,8 @@ class Search {
       }
     } else if (wants(entry.path())) {
       search.files.push_back(entry.path());
+    } else if (error && !leads_nowhere(error)) {
+      add_unsearched(search, entry.path(), error);  // it may be a folder
     } else if (counts) {
       ++passed_over_files_.files[kind_of(entry.path())];
     }
@@ -235,7 +246,7 @@ class Search {
   /// Adds what is in a folder, unless it was searched before.
   void list_folder(Folder& search, const fs::path& folder) {
     const FolderId id = id_of(folder);
-    if (!search.searched.insert(id).second) return;
+    if (id != FolderId() && !search.searched.insert(id).second) return;
     const bool counts = counted_.insert(id).second;  // not if another input was or held the folder
     std::error_code error;
     std::vector<fs::directory_entry> entries;
@@ -246,6 +257,10 @@ class Search {
     for (const fs::directory_entry& each : entries) add_entry(search, each, counts);
     if (!error) return;
     if (folder == search.top) throw unsearchable(folder, error);
+    add_unsearched(search, folder, error);
+  }
+
+  static void add_unsearched(Folder& search, const fs::path& folder, const std::error_code& error) {
     search.unsearched.push_back(found_scan(folder, folder.lexically_relative(search.top)));
     search.unsearched.back().error = unsearchable(folder, error).what();
   }

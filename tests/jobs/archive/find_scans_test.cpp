@@ -8,6 +8,7 @@
 #include <set>
 
 #include "io/files/error.hpp"
+#include "io/files/read_error.hpp"
 #include "tests/support/containers.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -320,6 +321,30 @@ TEST_F(FindScansTest, AFolderThatCannotBeSearchedIsNamedAndTheOthersAreSearched)
   EXPECT_EQ(found[2].input, folder_ / "in/locked");
   EXPECT_TRUE(found[2].error.starts_with((folder_ / "in/locked").string() + ": cannot be searched"))
       << found[2].error;
+}
+
+// A folder may be listed by those who may look at nothing in it.
+TEST_F(FindScansTest, EachThingThatCannotBeLookedAtIsNamed) {
+  for (const char* file : {"in/a.ply", "in/listed/one/b.ply", "in/listed/two/c.ply"}) add(file);
+  fs::create_directory_symlink("one", folder_ / "in/listed/way");
+  const fs::perms listed = fs::perms(0444);
+  fs::permissions(folder_ / "in/listed", listed);
+  fs::permissions(folder_.path(), fs::perms(0755));
+  const bool root = geteuid() == 0;
+  if (root) ASSERT_EQ(seteuid(65534), 0);
+  const auto found = find({folder_ / "in"});
+  EXPECT_THROW(find({folder_ / "in/listed/one"}), io::ReadError);
+  if (root) ASSERT_EQ(seteuid(0), 0);
+  fs::permissions(folder_ / "in/listed", fs::perms::owner_all);
+  ASSERT_EQ(found.size(), 4u);
+  EXPECT_EQ(found[0].name, "a.ply");
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(found[1 + i].input, folder_ / "in/listed" /
+                                      (i == 0   ? "one"
+                                       : i == 1 ? "two"
+                                                : "way"));
+    EXPECT_NE(found[1 + i].error.find(": cannot be searched"), std::string::npos);
+  }
 }
 
 TEST_F(FindScansTest, InputsThatAreNoScansAreErrorsThatNameThem) {
