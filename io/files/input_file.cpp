@@ -17,10 +17,11 @@ InputFile::InputFile(std::filesystem::path path) : path_(std::move(path)) {
   // With O_NONBLOCK the opening of a pipe does not wait for a writer. Regular files are not
   // affected.
   descriptor_ = engine::open_file(path_, O_RDONLY | O_NONBLOCK);
-  // Sockets, and devices without a driver, cannot even be opened.
-  if (!descriptor_ && errno != ENXIO) throw open_error(path_, errno);
   struct stat status {};
-  if (::fstat(descriptor_.get(), &status) != 0) throw open_error(path_, errno);
+  // Sockets, and devices without a driver, cannot even be opened.
+  const bool refused = !descriptor_ && errno != ENXIO;
+  if (refused || (descriptor_ && ::fstat(descriptor_.get(), &status) != 0))
+    throw open_error(path_, errno);
   if (S_ISREG(status.st_mode)) {
     size_ = status.st_size;
     return;

@@ -83,7 +83,8 @@ herr_t collect_link(hid_t, const char* name, const H5L_info_t* info, void* data)
 
 // HDF5's exit handler is turned off. It would flush what a full disk has left unwritten, and crash.
 static bool has_started() {
-  return H5dont_atexit() >= 0 && H5open() >= 0;
+  H5dont_atexit();  // fails if the library runs already, as in programs that also use it directly
+  return H5open() >= 0;
 }
 
 // HDF5 starts once for each process. If it gets no memory then, it stays half started, and later
