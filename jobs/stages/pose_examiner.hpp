@@ -51,6 +51,9 @@ class PoseExaminer {
   /// Keeps references to both, which must neither move nor change.
   PoseExaminer(const kernels::RecognitionModel& scene, const RecognitionTuning& tuning);
 
+  /// Returns the tree of the scene's samples.
+  const kernels::SampleTree& scene_tree() const { return tree_; }
+
   /// Glances at all poses of a model, and keeps those that are worth a closer look.
   void glance(ListedModel& listed) const;
 

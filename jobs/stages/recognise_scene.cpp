@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <numeric>
 #include <utility>
 
 #include "jobs/stages/match_triplets.hpp"
 #include "jobs/stages/match_votes.hpp"
 #include "jobs/stages/pose_examiner.hpp"
+#include "kernels/recognition/curvature_frame.hpp"
 #include "kernels/recognition/feature_pair.hpp"
 
 namespace semigeo::jobs {
@@ -37,7 +39,10 @@ class Recogniser {
     most_matches_ = tuning_.shortlist.most_matches;
     examine();
     find_objects();
-    if (scene_.eye) look_again();
+    if (scene_.eye) {
+      look_again();
+      look_at_curvature();
+    }
     rank();
     return std::move(result_);
   }
@@ -75,6 +80,11 @@ class Recogniser {
     choose_models();
     for_each(shortlist_.size(),
              [this](std::size_t i) { examiner_.look_closer(shortlist_[i], effort()); });
+    verify_best();
+  }
+
+  /// Refines and measures the best poses of all models.
+  void verify_best() {
     choose_poses();
     for_each(poses_.size(),
              [this](std::size_t i) { examiner_.verify(shortlist_[poses_[i].listed], poses_[i]); });
@@ -87,19 +97,86 @@ class Recogniser {
   /// Looks once more at what the objects leave of a scene that was seen from one place: with more
   /// triangles of its features alone.
   void look_again() {
+    if (!enough_is_left()) return;
     const SecondLookTuning& tuning = tuning_.second_look;
-    const auto left = std::ranges::count(used_, 0);
-    if (static_cast<double>(left) < tuning.least_left * static_cast<double>(used_.size())) return;
     LookUpTuning look = tuning_.look_up;
     look.most_triangles = tuning.most_triangles;
     look_up(examiner_.features_off(used_), look);
     most_matches_ = tuning.most_matches;
-    std::vector<ExaminedPose> first = std::move(poses_);
-    poses_.clear();
+    const std::vector<ExaminedPose> before = std::exchange(poses_, {});
     examine();
-    poses_.insert(poses_.end(), first.begin(), first.end());
+    find_objects_again(before);
+  }
+
+  /// Looks a third time at what is left of such a scene: at its curvature, which tells where models
+  /// without features may be. Only models that were not found are tried.
+  void look_at_curvature() {
+    if (!enough_is_left()) return;
+    const std::vector<kernels::CurvatureFrame> frames =
+        kernels::curvature_frames(examiner_.scene_tree(), tuning_.third_look.of_scene, used_);
+    if (frames.empty()) return;
+    const std::vector<std::size_t> missing = list_missing();
+    for (ListedModel& listed : shortlist_) listed.poses.clear();
+    pairs_.clear();
+    for_each(missing.size(), [&](std::size_t i) {
+      find_poses_by_curvature(missing[i], frames);
+      examiner_.glance(shortlist_[missing[i]]);
+      examiner_.look_closer(shortlist_[missing[i]], effort());
+    });
+    const std::vector<ExaminedPose> before = std::exchange(poses_, {});
+    verify_best();
+    find_objects_again(before);
+  }
+
+  /// Tells whether the objects leave enough of the scene for another look.
+  bool enough_is_left() const {
+    const auto left = static_cast<double>(std::ranges::count(used_, 0));
+    return left >= tuning_.second_look.least_left * static_cast<double>(used_.size());
+  }
+
+  /// Finds objects by the poses of this look and of those before it.
+  void find_objects_again(const std::vector<ExaminedPose>& before) {
+    poses_.insert(poses_.end(), before.begin(), before.end());
     std::ranges::stable_sort(poses_, std::ranges::greater(), &ExaminedPose::score);
     find_objects();
+  }
+
+  /// Lists the models that were not found, those with the fewest features first, and returns their
+  /// places in the list.
+  std::vector<std::size_t> list_missing() {
+    std::vector<std::int64_t> missing;
+    for (std::int64_t i = 0; i < std::ssize(library_.models()); ++i)
+      if (std::ranges::find(result_.objects, i, &Candidate::model) == result_.objects.end())
+        missing.push_back(i);
+    std::ranges::stable_sort(missing, {},
+                             [this](std::int64_t i) { return library_.models()[i].features; });
+    missing.resize(std::min(missing.size(), tuning_.third_look.most_models));
+    std::vector<std::size_t> places;
+    for (const std::int64_t model : missing) {
+      const auto at = std::ranges::find(shortlist_, model, &ListedModel::model);
+      places.push_back(static_cast<std::size_t>(at - shortlist_.begin()));
+      if (at == shortlist_.end()) shortlist_.emplace_back().model = model;
+    }
+    return places;
+  }
+
+  /// Finds the poses on which frames of curvature of the listed model and the scene agree.
+  void find_poses_by_curvature(std::size_t index,
+                               const std::vector<kernels::CurvatureFrame>& of_scene) {
+    const ThirdLookTuning& tuning = tuning_.third_look;
+    ListedModel& listed = shortlist_[index];
+    if (listed.record.samples.points.empty()) listed.record = library_.read_model(listed.model);
+    const RecognitionModel& model = listed.record;
+    if (!listed.tree) listed.tree.emplace(model.samples);
+    std::vector<kernels::PoseVote> votes = kernels::votes_of_frames(
+        of_scene, kernels::curvature_frames(*listed.tree, tuning.of_model), tuning.ratio_tolerance);
+    const ScaleRange scales = options_.scale.widened();
+    std::erase_if(votes,
+                  [&](const kernels::PoseVote& vote) { return !scales.has(vote.pose.scale); });
+    const kernels::PoseVotes together(votes, model.centre.cast<double>(), model.diagonal);
+    for (const kernels::PoseCluster& cluster : together.clusters(tuning.clusters))
+      listed.poses.push_back(
+          {.listed = index, .pose = cluster.pose, .cluster = tuning.vote_weight * cluster.weight});
   }
 
   /// Lists models that got votes. Those come first that got the most beyond what chance gives a
@@ -271,7 +348,7 @@ class Recogniser {
   std::vector<double> votes_;                ///< Votes of each model in the whole scene.
   std::vector<std::uint8_t> used_;           ///< Marks samples of the scene that lie on objects.
   std::vector<kernels::FeaturePair> pairs_;  ///< Pairs of the scene, if it has few triplets.
-  std::vector<ListedModel> shortlist_;
+  std::deque<ListedModel> shortlist_;        ///< A deque, as trees refer to records.
   std::vector<ExaminedPose> poses_;
   Recognition result_;
 };

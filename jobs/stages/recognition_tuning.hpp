@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernels/recognition/curvature_frame.hpp"
 #include "kernels/recognition/overlap.hpp"
 #include "kernels/recognition/pose_clusters.hpp"
 
@@ -129,6 +130,19 @@ struct SecondLookTuning {
   std::size_t most_matches = 20'000;      ///< Largest number of matches of one model.
 };
 
+/// Step 10: the curvature of what is still left of such a scene votes for poses of the models that
+/// were not found. It needs no features.
+struct ThirdLookTuning {
+  /// Number of models that are tried, those with the fewest features first.
+  std::size_t most_models = 40;
+  /// Which points of the scene vote. Samples of the scene lie closer together than those of models.
+  kernels::FrameOptions of_scene = {.radius = 5, .most = 300};
+  kernels::FrameOptions of_model = {.radius = 3, .most = 300};  ///< Which points of a model vote.
+  double ratio_tolerance = 0.06;  ///< Largest difference of the ratios of curvatures that match.
+  kernels::ClusterOptions clusters = {.seeds = 600, .most = 60};  ///< How votes form clusters.
+  double vote_weight = 0.1;  ///< Weight of a vote: points agree by chance far more often.
+};
+
 /// The weights of the score, measured on thousands of right and wrong poses. The score is
 ///   sqrt(match either) held^h unopposed^u closeness^c (explained wanted)^e
 /// where either = 1 - (1 - match) (1 - explained), held = stability / (stability + half),
@@ -184,6 +198,7 @@ struct RecognitionTuning {
   SymmetricPoseTuning symmetric_poses = {};
   ObjectTuning objects = {};
   SecondLookTuning second_look = {};
+  ThirdLookTuning third_look = {};
   ScoreWeights score = {};
   ViewTuning view = {};
 };

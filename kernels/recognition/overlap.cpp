@@ -54,6 +54,28 @@ class NearestWithin {
   std::int64_t index_ = -1;
 };
 
+/// Collects all points within a limit.
+class AllWithin {
+ public:
+  using DistanceType = float;
+  AllWithin(float squared_limit, std::vector<std::uint32_t>& found)
+      : squared_(squared_limit), found_(found) {}
+  // nanoflann asks for these names.
+  // NOLINTBEGIN(readability-identifier-naming)
+  bool addPoint(float squared, std::size_t index) {
+    if (squared < squared_) found_.push_back(static_cast<std::uint32_t>(index));
+    return true;
+  }
+  float worstDist() const { return squared_; }
+  // NOLINTEND(readability-identifier-naming)
+  bool full() const { return true; }
+  std::size_t size() const { return found_.size(); }
+
+ private:
+  float squared_;
+  std::vector<std::uint32_t>& found_;
+};
+
 /// A similarity in single precision, for many points.
 struct FastPose {
   Eigen::Matrix3f scaled;
@@ -217,6 +239,14 @@ std::int64_t SampleTree::nearest(const Vector3f& p, float limit, std::int64_t gu
   }
   tree_->index.findNeighbors(result, p.data(), nanoflann::SearchParams());
   return result.index();
+}
+
+void SampleTree::within(const Vector3f& p, float limit, std::vector<std::uint32_t>& found) const {
+  found.clear();
+  if (samples_->points.empty()) return;
+  AllWithin result(limit * limit, found);
+  tree_->index.findNeighbors(result, p.data(), nanoflann::SearchParams());
+  std::ranges::sort(found);
 }
 
 double Overlap::agreement() const {

@@ -26,6 +26,10 @@ class SampleTree {
   /// makes the search shorter.
   std::int64_t nearest(const Eigen::Vector3f& p, float limit, std::int64_t guess = -1) const;
 
+  /// Fills `found` with the indices of the samples that are nearer to a point than `limit`,
+  /// ascending.
+  void within(const Eigen::Vector3f& p, float limit, std::vector<std::uint32_t>& found) const;
+
  private:
   struct Tree;
   const SurfaceSamples* samples_;

@@ -167,6 +167,39 @@ TEST_F(RecogniseSceneTest, WhatIsHiddenFromOnePlaceSaysNothingAgainstAnObject) {
   EXPECT_EQ(seen.objects.size(), 5);
 }
 
+/// A torus has no features but those of rounding and of its triangles, which are taken away. Then
+/// no triplet tells where it is. Its curvature does.
+TEST_F(RecogniseSceneTest, WithoutFeaturesItIsFoundByItsCurvature) {
+  std::vector<TriangleMesh> objects;
+  for (int seed = 0; seed < 3; ++seed)
+    objects.push_back(body(seed, 5, Eigen::Matrix3d::Identity()));
+  objects.push_back(shapes::torus(1, 0.4, 100, 50));
+  learn(objects);
+  TriangleMesh mesh;
+  add_seen_from_above(objects[0], -2, Vector3d::Zero(), mesh);
+  const Similarity pose{.scale = 0.8,
+                        .rotation = Eigen::AngleAxisd(0.7, Vector3d::UnitX()).toRotationMatrix(),
+                        .translation = Vector3d::Zero()};
+  TriangleMesh torus = shapes::torus(1, 0.4, 87, 37, 0.2);
+  for (Vector3d& p : torus.points) p = pose.apply(p);
+  const Vector3d place(3, 0, 0);
+  add_seen_from_above(torus, -2, place, mesh);
+  kernels::RecognitionModel scene = scene_of(mesh);
+  std::erase_if(scene.features.features,
+                [](const kernels::OrientedFeature& feature) { return feature.position.x() > 1.5; });
+  scene.eye = Vector3d(0, 0, 1000);
+  RecognitionOptions two_looks;
+  two_looks.tuning.third_look.most_models = 0;
+  EXPECT_EQ(recognise_scene(*library_, scene, two_looks, context_).objects.size(), 1);
+  const Recognition seen = recognise_scene(*library_, scene, {}, context_);
+  ASSERT_EQ(seen.objects.size(), 2);
+  const auto found = std::ranges::find(seen.objects, 3, &Candidate::model);
+  ASSERT_NE(found, seen.objects.end());
+  EXPECT_NEAR(found->pose.scale, 0.8, 0.02);
+  EXPECT_LT((found->pose.translation - place).norm(), 0.03);
+  EXPECT_GT(std::abs(found->pose.rotation.col(2).dot(pose.rotation.col(2))), std::cos(kDegree));
+}
+
 TEST_F(RecogniseSceneTest, ObjectsOfOtherSizesAreLeftOut) {
   learn({body(0, 4, Eigen::Matrix3d::Identity()), body(1, 4, Eigen::Matrix3d::Identity())});
   std::mt19937_64 random(6);

@@ -279,5 +279,20 @@ TEST(Overlap, NothingNearNothingMoved) {
   EXPECT_EQ(found.scale, away.scale);
 }
 
+TEST(SampleTree, FindsAllSamplesWithinALimit) {
+  const SurfaceSamples samples =
+      sample_surface(Body().points, Body().triangles, Body().normals, 500);
+  const SampleTree tree(samples);
+  std::vector<std::uint32_t> found;
+  for (const std::size_t at : {0, 7, 300}) {
+    std::vector<std::uint32_t> near;
+    for (std::uint32_t i = 0; i < 500; ++i)
+      if ((samples.points[i] - samples.points[at]).norm() < 0.3F) near.push_back(i);
+    tree.within(samples.points[at], 0.3F, found);
+    EXPECT_EQ(found, near);
+    EXPECT_GT(found.size(), 1);
+  }
+}
+
 }  // namespace
 }  // namespace semigeo::kernels
