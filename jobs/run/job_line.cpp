@@ -47,6 +47,13 @@ JobRequest job_request_from(const std::string& line, const JobKinds& kinds) {
     const auto text = [&](const char* name) {
       return unescaped(object.at(name).get<std::string>());
     };
+    // A number beyond 64 bits is read as a floating-point number, which has no bytes to give.
+    const auto bytes = [&](const char* name) {
+      const json& number = object.at(name);
+      if (!number.is_number_integer())
+        throw std::runtime_error(std::string("has no whole ") + name);
+      return number.get<std::uint64_t>();
+    };
     JobRequest request;
     Job& job = request.job;
     const auto kind = object.at("kind").get<std::string>();
@@ -58,8 +65,8 @@ JobRequest job_request_from(const std::string& line, const JobKinds& kinds) {
     object.at("key").get_to(job.key);
     job.data = job.kind->data_from_json(object.at("data"));
     object.at("threads").get_to(request.threads);
-    object.at("memory_bytes").get_to(request.memory_bytes);
-    object.at("address_space_bytes").get_to(request.address_space_bytes);
+    request.memory_bytes = bytes("memory_bytes");
+    request.address_space_bytes = bytes("address_space_bytes");
     request.log = text("log");
     return request;
   });

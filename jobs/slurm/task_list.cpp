@@ -61,6 +61,9 @@ TaskSettings settings_from(const std::string& line) {
   TaskSettings settings;
   settings.archive = unescaped(object.at("archive").get<std::string>());
   object.at("threads").get_to(settings.threads);
+  // A number beyond 64 bits is read as a floating-point number, which has no bytes to give.
+  if (!object.at("memory_bytes").is_number_integer())
+    throw std::runtime_error("has no whole memory_bytes");
   object.at("memory_bytes").get_to(settings.memory_bytes);
   object.at("timeout_seconds").get_to(settings.timeout_seconds);
   object.at("retries").get_to(settings.retries);

@@ -80,6 +80,9 @@ RemeshResult remesh_surface(kernels::LevelMesh& mesh, std::vector<PartMeasure> p
     result.vanished = result.vanished || remesher.vanished();
     result.counts += remesher.finish();
     parts = measure_parts(mesh, options.edge_limit, context);
+    // All that is left is one triangle or tetrahedron. Far from the origin, where rounding makes
+    // its corners one point, it would be odd again and again.
+    if (remesher.vanished()) break;
   }
   result.parts = std::move(parts);
   return result;

@@ -178,8 +178,11 @@ void Remesher::remove_flat_face(std::int32_t f) {
     if (mesh_.length2(h) < mesh_.length2(shortest)) shortest = h;
   }
   if (!flip_is_better(longest) || !editor_.may_flip(longest)) {
+    const RemeshCounts before = counts_;
     remove_edge(shortest);
-    push_face(f);  // what was in the way of the edge may have gone without it
+    // What was in the way of the edge may have gone without it. Where nothing was done, as to a
+    // last triangle, nothing would be done again and again.
+    if (counts_ != before) push_face(f);
     return;
   }
   const std::int32_t h = editor_.flip(longest);
