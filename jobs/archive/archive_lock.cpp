@@ -15,6 +15,7 @@
 
 #include "engine/descriptor.hpp"
 #include "io/files/atomic_file.hpp"
+#include "jobs/archive/json_value.hpp"
 #include "jobs/archive/utc_time.hpp"
 
 namespace semigeo::jobs {
@@ -46,9 +47,9 @@ std::optional<Owner> owner_in(const std::string& text) {
     const auto document = nlohmann::json::parse(text);
     Owner owner;
     document.at("host").get_to(owner.process.host);
-    document.at("pid").get_to(owner.process.pid);
+    read_value(document.at("pid"), owner.process.pid);
     document.at("boot_id").get_to(owner.process.boot_id);
-    document.at("process_started").get_to(owner.process.started);
+    read_value(document.at("process_started"), owner.process.started);
     document.at("since").get_to(owner.since);
     return owner;
   } catch (const nlohmann::json::exception&) {

@@ -10,6 +10,7 @@
 #include "io/files/number_text.hpp"
 #include "io/files/read_error.hpp"
 #include "io/files/small_file.hpp"
+#include "jobs/archive/json_value.hpp"
 #include "jobs/archive/scan_size.hpp"
 #include "jobs/plan/plan.hpp"
 #include "jobs/plan/typed_job_kind.hpp"
@@ -71,7 +72,7 @@ static void to_json(json& object, const SurfaceJobResult& result) {
 }
 
 static void from_json(const json& object, SurfaceJobResult& result) {
-  each_field(result, [&](const char* name, auto& value) { object.at(name).get_to(value); });
+  each_field(result, [&](const char* name, auto& value) { read_value(object.at(name), value); });
 }
 
 static void to_json(json& object, const SurfaceJobData& data) {

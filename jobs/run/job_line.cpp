@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "io/files/small_file.hpp"
+#include "jobs/archive/json_value.hpp"
 #include "jobs/archive/path_text.hpp"
 
 namespace semigeo::jobs {
@@ -47,13 +48,6 @@ JobRequest job_request_from(const std::string& line, const JobKinds& kinds) {
     const auto text = [&](const char* name) {
       return unescaped(object.at(name).get<std::string>());
     };
-    // A number beyond 64 bits is read as a floating-point number, which has no bytes to give.
-    const auto bytes = [&](const char* name) {
-      const json& number = object.at(name);
-      if (!number.is_number_integer())
-        throw std::runtime_error(std::string("has no whole ") + name);
-      return number.get<std::uint64_t>();
-    };
     JobRequest request;
     Job& job = request.job;
     const auto kind = object.at("kind").get<std::string>();
@@ -64,9 +58,9 @@ JobRequest job_request_from(const std::string& line, const JobKinds& kinds) {
     job.output = text("output");
     object.at("key").get_to(job.key);
     job.data = job.kind->data_from_json(object.at("data"));
-    object.at("threads").get_to(request.threads);
-    request.memory_bytes = bytes("memory_bytes");
-    request.address_space_bytes = bytes("address_space_bytes");
+    read_value(object.at("threads"), request.threads);
+    read_value(object.at("memory_bytes"), request.memory_bytes);
+    read_value(object.at("address_space_bytes"), request.address_space_bytes);
     request.log = text("log");
     return request;
   });
@@ -89,7 +83,7 @@ std::string to_line(const JobReply& reply) {
 JobReply job_reply_from(const std::string& line) {
   return reading("answer of a job", line, [](const json& object) {
     JobReply reply;
-    object.at("worked").get_to(reply.worked);
+    read_value(object.at("worked"), reply.worked);
     if (const auto failed = object.find("failed"); failed != object.end()) {
       failed->get_to(reply.error);
       reply.write_error = object.value("write_error", 0);

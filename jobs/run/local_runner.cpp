@@ -33,7 +33,7 @@ constexpr std::uint64_t kMemoryFactor = 4;
 constexpr std::uint64_t kLeastAddressSpace = std::uint64_t{2} << 30;
 constexpr std::uint64_t kAddressSpacePerThread = std::uint64_t{192} << 20;  // stacks and arenas
 constexpr std::size_t kLastLines = 3;
-/// The allocator of glibc then asks for huge pages. Large arrays are so zeroed at less cost.
+/// With it, the allocator of glibc asks for huge pages, so that large arrays are zeroed faster.
 constexpr const char* kHugePages = "GLIBC_TUNABLES=glibc.malloc.hugetlb=1";
 
 /// Returns the end of a file, which may have any size. It is empty if the file cannot be read.

@@ -8,6 +8,7 @@
 
 #include "io/files/error.hpp"
 #include "io/files/line_reader.hpp"
+#include "jobs/archive/json_value.hpp"
 #include "jobs/archive/path_text.hpp"
 
 namespace semigeo::jobs {
@@ -60,13 +61,10 @@ TaskSettings settings_from(const std::string& line) {
   const json object = json::parse(line);
   TaskSettings settings;
   settings.archive = unescaped(object.at("archive").get<std::string>());
-  object.at("threads").get_to(settings.threads);
-  // A number beyond 64 bits is read as a floating-point number, which has no bytes to give.
-  if (!object.at("memory_bytes").is_number_integer())
-    throw std::runtime_error("has no whole memory_bytes");
-  object.at("memory_bytes").get_to(settings.memory_bytes);
+  read_value(object.at("threads"), settings.threads);
+  read_value(object.at("memory_bytes"), settings.memory_bytes);
   object.at("timeout_seconds").get_to(settings.timeout_seconds);
-  object.at("retries").get_to(settings.retries);
+  read_value(object.at("retries"), settings.retries);
   object.at("fail_fast").get_to(settings.fail_fast);
   object.at("deadline").get_to(settings.deadline);
   return settings;
@@ -189,8 +187,8 @@ TaskResults read_results(const fs::path& file) try {
       JobOutcome& outcome = result.outcome;
       const json object = json::parse(line);
       object.at("seconds").get_to(outcome.seconds);
-      object.at("threads").get_to(outcome.threads);
-      object.at("attempts").get_to(outcome.attempts);
+      read_value(object.at("threads"), outcome.threads);
+      read_value(object.at("attempts"), outcome.attempts);
       results[unescaped(object.at("job").get<std::string>())] = std::move(result);
     } catch (const std::exception&) {
       continue;  // the output itself decides

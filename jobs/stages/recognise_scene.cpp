@@ -348,7 +348,7 @@ class Recogniser {
   std::vector<double> votes_;                ///< Votes of each model in the whole scene.
   std::vector<std::uint8_t> used_;           ///< Marks samples of the scene that lie on objects.
   std::vector<kernels::FeaturePair> pairs_;  ///< Pairs of the scene, if it has few triplets.
-  std::deque<ListedModel> shortlist_;        ///< A deque, as trees refer to records.
+  std::deque<ListedModel> shortlist_;        ///< A deque, because trees refer to its records.
   std::vector<ExaminedPose> poses_;
   Recognition result_;
 };

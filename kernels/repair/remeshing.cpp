@@ -180,8 +180,8 @@ void Remesher::remove_flat_face(std::int32_t f) {
   if (!flip_is_better(longest) || !editor_.may_flip(longest)) {
     const RemeshCounts before = counts_;
     remove_edge(shortest);
-    // What was in the way of the edge may have gone without it. Where nothing was done, as to a
-    // last triangle, nothing would be done again and again.
+    // What was in the way of the edge may have gone without it. If nothing was done, as with a last
+    // triangle, another try would do nothing either.
     if (counts_ != before) push_face(f);
     return;
   }
