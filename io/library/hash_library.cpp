@@ -42,19 +42,20 @@ std::vector<std::string> read_texts(const Hdf5File& file, const char* path, std:
   return texts;
 }
 
-/// Reads offsets (models + 1). They must ascend from 0 to the number of rows of `array`, with at
-/// most `most` rows for each model.
+/// Reads offsets (models + 1). The first is looked at first, because the differences of numbers
+/// that ascend from 0 cannot overflow. They must ascend from 0 to the number of rows of `array`,
+/// with at most `most` rows for each model.
 std::vector<std::int64_t> read_offsets(const Hdf5File& file, const std::string& path,
                                        std::size_t models, std::int64_t rows, std::int64_t most) {
   std::vector<std::int64_t> offsets = read_integers(file, path, 1);
   if (offsets.size() != models + 1)
     file.refuse(
         path, "has not one number for each of " + std::to_string(models) + " models, and the end");
+  if (offsets.front() != 0 || offsets.back() != rows)
+    file.refuse(path, "its models are not from row 0 to row " + std::to_string(rows));
   for (std::size_t i = 0; i < models; ++i)
     if (offsets[i + 1] < offsets[i] || offsets[i + 1] - offsets[i] > most)
       file.refuse(path, "model " + std::to_string(i) + " ends before it begins, or is too large");
-  if (offsets.front() != 0 || offsets.back() != rows)
-    file.refuse(path, "its models are not from row 0 to row " + std::to_string(rows));
   return offsets;
 }
 

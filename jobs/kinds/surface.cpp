@@ -256,6 +256,7 @@ bool remake_sidecar(const Job& job) {
 class SurfaceKind final : public TypedJobKind<SurfaceJobData, SurfaceJobResult> {
  public:
   const JobWords& words() const override { return words_; }
+  bool fills_large_arrays() const override { return true; }
 
   std::string read_key(const fs::path& output, KeyCheck) const override {
     return io::read_origin(output).job_key;

@@ -31,6 +31,10 @@ std::uintmax_t JobKind::bytes_to_read(const Job&) const {
   return 0;
 }
 
+bool JobKind::fills_large_arrays() const {
+  return false;
+}
+
 std::int64_t JobKind::vertex_levels(const std::any&) const {
   return 0;
 }

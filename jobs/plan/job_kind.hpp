@@ -124,6 +124,9 @@ class JobKind {
   virtual Estimate estimate(const PlannedJob& planned, const EstimateContext& context) const;
   /// Returns the bytes by which the time left is judged; 0 if the job reads no scan.
   virtual std::uintmax_t bytes_to_read(const Job& job) const;
+  /// Returns whether jobs of this kind fill arrays of many megabytes again and again, so that huge
+  /// pages save time. Other jobs would wait for pages to be zeroed of which they need a part.
+  virtual bool fills_large_arrays() const;
   /// Does the job in this process. Returns the kind's result, or nothing if there is nothing to
   /// tell. Throws io::Error, std::bad_alloc or another std::exception if the job fails.
   virtual std::any run(const Job& job, const JobContext& context) const = 0;

@@ -115,7 +115,7 @@ void LocalRunner::start(const JobStart& start) try {
 }
 
 void LocalRunner::hand_over(const JobStart& start) {
-  if (idle_.empty()) idle_.push_back(start_worker());
+  if (idle_.empty()) idle_.push_back(start_worker(*start.planned->job.kind));
   const Child child = idle_.back();
   idle_.pop_back();
   const JobRequest request{.job = start.planned->job,
@@ -131,11 +131,13 @@ void LocalRunner::hand_over(const JobStart& start) {
   running_.insert_or_assign(child, Running{start, timeout, steady_clock()});
 }
 
-LocalRunner::Child LocalRunner::start_worker() {
+/// Starts a process for jobs, of which the first will be one of the given kind.
+LocalRunner::Child LocalRunner::start_worker(const JobKind& first) {
   engine::Command command{
       .arguments = {options_.program.string(), "job"},
       .limits = {},
-      .environment = {kHugePages},
+      .environment = first.fills_large_arrays() ? std::vector<std::string>{kHugePages}
+                                                : std::vector<std::string>{},
       .log = options_.worker_log.empty() ? options_.logs / "workers.log" : options_.worker_log,
       .append_to_log = true,
       .converses = true};

@@ -53,7 +53,7 @@ class LocalRunner : public Runner {
   };
   void start(const JobStart& job);
   void hand_over(const JobStart& job);
-  Child start_worker();
+  Child start_worker(const JobKind& first);
   RunnerEvent answered(std::map<Child, Running>::iterator at, const std::string& line);
   JobLost lost(std::map<Child, Running>::iterator at, const engine::ChildProcesses::Ended& ended);
   std::filesystem::path log_of(const Job& job) const;

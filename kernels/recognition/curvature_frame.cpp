@@ -11,13 +11,6 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// Returns any unit vector at right angles to a unit vector.
-Vector3f tangent_of(const Vector3f& normal) {
-  Eigen::Index axis = 0;
-  normal.cwiseAbs().minCoeff(&axis);
-  return normal.cross(Vector3f::Unit(axis)).normalized();
-}
-
 /// Fits the shape operator to the normals of the samples about one of them: normals change by it
 /// times the way. Returns nothing where the surface is too flat, too round or too uneven.
 std::optional<CurvatureFrame> frame_at(const SurfaceSamples& samples, std::size_t at,
@@ -26,7 +19,7 @@ std::optional<CurvatureFrame> frame_at(const SurfaceSamples& samples, std::size_
   constexpr int kFewest = 8;
   constexpr float kMinCosine = 0.3F;
   const Vector3f& normal = samples.normals[at];
-  const Vector3f u = tangent_of(normal), v = normal.cross(u);
+  const Vector3f u = normal.unitOrthogonal(), v = normal.cross(u);
   Eigen::Matrix3d left = Eigen::Matrix3d::Zero();
   Vector3d right = Vector3d::Zero();
   double turned = 0;
