@@ -177,7 +177,7 @@ std::byte* put_stored_blocks(std::span<const std::byte> bytes, std::byte* out) {
 
 // Returns how many planes at the back of shuffled rows repeat one byte: the high bytes of numbers
 // of vertices are zeros, and where all patches are complete, all bytes of completeness are the
-// same.
+// same. Returns 0 if they are so few that the compressor may have them too.
 std::size_t constant_planes_at_back(std::span<const std::byte> shuffled, std::size_t element_size) {
   const std::size_t plane = shuffled.size() / element_size;
   std::size_t planes = 0;
@@ -187,26 +187,39 @@ std::size_t constant_planes_at_back(std::span<const std::byte> shuffled, std::si
     if (std::memcmp(bytes, bytes + 1, plane - 1) != 0) break;
     ++planes;
   }
-  return planes;
+  constexpr std::size_t kFew = 5;  // one in so many
+  return kFew * planes < element_size ? 0 : planes;
 }
 
-// Compresses `bytes` into blocks of a deflate stream that end at a byte, none of them the last one.
-// libdeflate can only end a stream. Returns the length, or 0 if it would be more than `most`.
-std::size_t put_open_blocks(std::span<const std::byte> bytes, std::byte* out, std::size_t most) {
-  z_stream stream = {};
+// Tells from which bit to which one a block of a deflate stream lies.
+struct BlockBits {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+// Finds the last block of a deflate stream, whose content goes to `inflated`. zlib.h describes at
+// inflate() how it stops at the ends of blocks.
+BlockBits last_block(std::span<const std::byte> stream, std::span<std::byte> inflated) {
   constexpr int kRaw = -15;
-  constexpr int kMemory = 8;
-  if (deflateInit2(&stream, kFastest, Z_DEFLATED, kRaw, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
-    throw std::bad_alloc();
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(bytes.data()));
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  stream.next_out = reinterpret_cast<Bytef*>(out);
-  stream.avail_out = static_cast<uInt>(most);
-  deflate(&stream, Z_SYNC_FLUSH);
-  const bool complete = stream.avail_in == 0 && stream.avail_out > 0;
-  const std::size_t length = stream.total_out;
-  deflateEnd(&stream);
-  return complete ? length : 0;
+  constexpr int kUnusedBits = 7;
+  constexpr int kLastBlock = 64;
+  z_stream state = {};
+  if (inflateInit2(&state, kRaw) != Z_OK) throw std::bad_alloc();
+  state.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(stream.data()));
+  state.avail_in = static_cast<uInt>(stream.size());
+  state.next_out = reinterpret_cast<Bytef*>(inflated.data());
+  state.avail_out = static_cast<uInt>(inflated.size());
+  BlockBits block;
+  int status = Z_OK;
+  do {
+    block.begin = block.end;
+    status = inflate(&state, Z_BLOCK);
+    block.end = 8 * state.total_in - static_cast<std::size_t>(state.data_type & kUnusedBits);
+  } while (status == Z_OK && (state.data_type & kLastBlock) == 0);
+  inflateEnd(&state);
+  if (status == Z_MEM_ERROR) throw std::bad_alloc();
+  if (status != Z_OK) throw std::logic_error("a stream of libdeflate has no last block");
+  return block;
 }
 
 constexpr std::size_t kLongestMatch = 258;
@@ -218,11 +231,11 @@ constexpr std::size_t most_of_constant_planes(std::size_t planes, std::size_t pl
 }
 
 // Writes the last block of a deflate stream, which holds planes of `plane` bytes that are all the
-// same, with the fixed codes of RFC 1951, 3.2.6: literals, and matches of the byte before.
-std::byte* put_constant_planes(std::span<const std::byte> planes, std::size_t plane,
+// same, with the fixed codes of RFC 1951, 3.2.6: literals, and matches of the byte before. The
+// lowest `held` bits at `out` stay.
+std::byte* put_constant_planes(std::span<const std::byte> planes, std::size_t plane, int held,
                                std::byte* out) {
-  std::uint64_t bits = 0;
-  int held = 0;
+  std::uint64_t bits = held > 0 ? std::to_integer<std::uint64_t>(*out) & ((1U << held) - 1) : 0;
   const auto put = [&](std::uint64_t code, int length) {
     bits |= code << held;
     for (held += length; held >= 8; held -= 8, bits >>= 8) *out++ = static_cast<std::byte>(bits);
@@ -273,15 +286,23 @@ std::size_t zlib_stream(libdeflate_compressor* compressor, std::span<const std::
   out[0] = std::byte{0x78};  // deflate, window of 32 KiB
   out[1] = std::byte{0x01};  // fastest level, no dictionary, check bits
   std::byte* end = put_stored_blocks(stored, out + kHeader);
+  int held = 0;
   if (repeated.empty() || !middle.empty()) {
     const std::size_t length =
-        repeated.empty()
-            ? libdeflate_deflate_compress(compressor, middle.data(), middle.size(), end, room)
-            : put_open_blocks(middle, end, room);
+        libdeflate_deflate_compress(compressor, middle.data(), middle.size(), end, room);
     if (length == 0) return 0;
-    end += length;
+    if (repeated.empty()) {
+      end += length;
+    } else {
+      // libdeflate only makes whole streams. Its last block must say that another one follows.
+      const auto inflated = std::make_unique_for_overwrite<std::byte[]>(middle.size());
+      const BlockBits last = last_block({end, length}, {inflated.get(), middle.size()});
+      end[last.begin / 8] &= ~(std::byte{1} << (last.begin % 8));
+      end += last.end / 8;
+      held = static_cast<int>(last.end % 8);
+    }
   }
-  if (!repeated.empty()) end = put_constant_planes(repeated, plane, end);
+  if (!repeated.empty()) end = put_constant_planes(repeated, plane, held, end);
   const std::uint32_t adler = libdeflate_adler32(1, bytes.data(), bytes.size());
   for (int shift = 24; shift >= 0; shift -= 8)
     *end++ = static_cast<std::byte>(adler >> shift & 0xff);

@@ -109,6 +109,18 @@ TEST_P(ChunkCodec, NumbersOfVerticesComeBack) {
   }
 }
 
+// The compressor makes several blocks of 96 KiB, of which the last one has to be found, and ends
+// them at any bit.
+TEST_P(ChunkCodec, NumbersWithSkewedBytesComeBack) {
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    std::mt19937 random(seed);
+    std::vector<std::int64_t> values(32768);
+    for (std::int64_t& value : values)
+      value = static_cast<std::int64_t>(random() & random() & random() & 0xffffff);
+    expect_stored(encode_array(array_of(values), GetParam()), values);
+  }
+}
+
 // All bytes of such planes are the same; some have codes of eight bits, others of nine.
 TEST_P(ChunkCodec, ConstantsComeBack) {
   for (const std::size_t count : {1032U, 1033U, 1290U, 70001U})
