@@ -120,7 +120,7 @@ void EvolvingSurface::adopt_mesh() {
   next_points_.resize(mesh_.points.size());
   next_normals_.resize(mesh_.points.size());
   faces_.resize(faces);
-  if (options_.curved) curved_.resize(faces);
+  if (options_.curved) curved_.resize(faces + 1);  // see `SampledSurface`
   stored_order_ = std::make_shared<const std::vector<std::int32_t>>(order_by_source(mesh_.source));
 }
 

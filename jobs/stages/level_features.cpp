@@ -234,9 +234,9 @@ class Finder {
     Eigen::Vector3d point =
         e.between(Eigen::Vector3d(p.cast<double>()), Eigen::Vector3d(q.cast<double>()));
     if (!curved_) return point;
-    const Eigen::Vector4f bulge =
+    const Eigen::Vector3f bulge =
         kernels::edge_bulge(p, q, fields_.normals[e.positive], fields_.normals[e.negative]);
-    return point + e.t * (1 - e.t) * bulge.head<3>().cast<double>();
+    return point + e.t * (1 - e.t) * bulge.cast<double>();
   }
 
   Contour contour(std::span<const EdgePoint> crossings, bool closed) const {

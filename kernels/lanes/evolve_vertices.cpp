@@ -29,7 +29,7 @@ BlockRay started(const GeodesicMesh& mesh, const Ray& ray) {
 static_assert(sizeof(GeodesicFace) == 64 && offsetof(GeodesicFace, dot) == 48 &&
               offsetof(GeodesicFace::Edge, twin) == 8 &&
               offsetof(GeodesicFace::Edge, origin) == 12);
-static_assert(sizeof(QuadraticFace) == 48 && sizeof(Eigen::Vector3f) == 12);
+static_assert(sizeof(QuadraticFace) == 36 && sizeof(Eigen::Vector3f) == 12);
 
 BlockSurface plain(const SampledSurface& surface) {
   const GeodesicMesh& mesh = surface.mesh;

@@ -50,7 +50,7 @@ struct BlockSurface {
   const float* edges;    ///< (4 F, 4) GeodesicFace: records by half-edge; slot 3 has dots and area.
   const float* points;   ///< (N, 4)
   const float* normals;  ///< (N, 3)
-  const float* bulges;   ///< (F, 3, 4) Null if faces are flat.
+  const float* bulges;   ///< (F, 3, 3) and one number more. Null if faces are flat.
   const std::int32_t* outgoing;    ///< (N)
   int max_crossings;               ///< At most `kMostCrossings`.
   const SampledSurface* original;  ///< The same surface, for `ray_from_vertex` and the like.

@@ -45,7 +45,9 @@ struct Patch {
 /// Describes the surface that patches sample: flat faces, or quadratic ones.
 struct SampledSurface {
   GeodesicMesh mesh;
-  std::span<const QuadraticFace> curved;  ///< (F) Empty if faces are flat.
+  /// (F + 1) Empty if faces are flat. The last one is spare, because lanes load four numbers where
+  /// they need three.
+  std::span<const QuadraticFace> curved;
 };
 
 /// Returns the position of a point of the sampled surface relative to `centre`. Differences are
@@ -61,8 +63,9 @@ inline Eigen::Vector4f sample_position(const SampledSurface& surface, const Face
   if (!surface.curved.empty()) {
     const QuadraticFace& face = surface.curved[face_of(h)];
     const float wa = 1 - at.x - at.y;
-    p += (wa * at.x) * face.bulge[corner_of(h)] + (at.x * at.y) * face.bulge[corner_of(next(h))] +
-         (at.y * wa) * face.bulge[corner_of(prev(h))];
+    p.head<3>() += (wa * at.x) * face.bulge[corner_of(h)] +
+                   (at.x * at.y) * face.bulge[corner_of(next(h))] +
+                   (at.y * wa) * face.bulge[corner_of(prev(h))];
   }
   return p;
 }

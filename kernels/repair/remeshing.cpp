@@ -339,7 +339,7 @@ Eigen::Vector3f Remesher::middle(std::int32_t a, std::int32_t b) const {
   const Eigen::Vector3f p = mesh_.points[a].head<3>();
   const Eigen::Vector3f q = mesh_.points[b].head<3>();
   Eigen::Vector3f m = (p + q) / 2;
-  if (curved_) m += edge_bulge(p, q, mesh_.normals[a], mesh_.normals[b]).head<3>() / 4;
+  if (curved_) m += edge_bulge(p, q, mesh_.normals[a], mesh_.normals[b]) / 4;
   return m;
 }
 

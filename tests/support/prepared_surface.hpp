@@ -23,7 +23,7 @@ struct PreparedSurface {
 
   void prepare() {
     faces.resize(surface.face_count());
-    faces_curved.resize(surface.face_count());
+    faces_curved.resize(surface.face_count() + 1);
     for (std::int32_t f = 0; f < surface.face_count(); ++f)
       measure_face(surface, points, f, faces[f]);
     for (std::int32_t f = 0; f < surface.face_count(); ++f) {

@@ -14,7 +14,7 @@ TEST(QuadraticFaceTest, EdgeFollowsACircle) {
   double previous = 0;
   for (const float angle : {0.4f, 0.2f, 0.1f}) {
     const Vector3f p(std::cos(angle), -std::sin(angle), 0), q(std::cos(angle), std::sin(angle), 0);
-    const Eigen::Vector4f bulge = edge_bulge(p, q, p, q);
+    const Eigen::Vector3f bulge = edge_bulge(p, q, p, q);
     const double error = std::abs(((p + q) / 2 + bulge.head<3>() / 4).norm() - 1);
     EXPECT_LT(error, 0.4 * std::pow(angle, 4));
     if (previous > 0 && error > 1e-7) EXPECT_LT(error, previous / 10);
