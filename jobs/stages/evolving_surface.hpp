@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/run_context.hpp"
+#include "engine/uninitialized_array.hpp"
 #include "jobs/stages/part_measures.hpp"
 #include "kernels/evolution/evolution.hpp"
 #include "kernels/lanes/instruction_set.hpp"
@@ -164,8 +165,8 @@ class EvolvingSurface {
 
   std::vector<Eigen::Vector4f> next_points_;
   std::vector<Eigen::Vector3f> next_normals_;
-  std::vector<kernels::GeodesicFace> faces_;
-  std::vector<kernels::QuadraticFace> curved_;
+  engine::UninitializedArray<kernels::GeodesicFace> faces_;
+  engine::UninitializedArray<kernels::QuadraticFace> curved_;
 };
 
 }  // namespace semigeo::jobs
