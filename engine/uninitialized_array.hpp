@@ -21,7 +21,7 @@ class UninitializedArray {
     resize(other.size());
     std::copy(other.begin(), other.end(), begin());
   }
-  UninitializedArray(UninitializedArray&&) = default;
+  UninitializedArray(UninitializedArray&&) noexcept = default;
   UninitializedArray& operator=(UninitializedArray other) {
     values_ = std::move(other.values_);
     size_ = other.size_;
