@@ -13,6 +13,13 @@
 namespace semigeo::engine {
 namespace {
 
+// Sanitizers have handlers of their own, which say more about a crash.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+
 // Handlers may read nothing but such values.
 const char* final_sentence = "";
 int final_code = EXIT_FAILURE;
@@ -52,12 +59,11 @@ void end_for_lack_of_memory(const char* sentence, int exit_code) {
   final_code = exit_code;
   const std::terminate_handler before = std::set_terminate(on_terminate);
   if (before != on_terminate) usual_end = before;
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  if constexpr (kSanitized) return;
   struct sigaction action = {};
   action.sa_handler = on_crash;
   sigemptyset(&action.sa_mask);
   for (const int number : {SIGSEGV, SIGBUS, SIGABRT}) sigaction(number, &action, nullptr);
-#endif
 }
 
 }  // namespace semigeo::engine
