@@ -95,15 +95,19 @@ void PoseExaminer::verify(const ListedModel& listed, ExaminedPose& pose) const {
 
 void PoseExaminer::measure(const ListedModel& listed, ExaminedPose& pose,
                            std::span<const std::uint8_t> used) const {
+  measure_by(tuning_.measurement.samples, listed, pose, used);
+}
+
+void PoseExaminer::measure_by(const MeasuredSamples& samples, const ListedModel& listed,
+                              ExaminedPose& pose, std::span<const std::uint8_t> used) const {
   const RecognitionModel& model = listed.record;
-  const MeasurementTuning& tuning = tuning_.measurement;
   kernels::OverlapOptions options = close_overlap(model, pose.pose);
   options.stability = true;
   options.depths = depths_ ? &*depths_ : nullptr;
   pose.overlap = kernels::overlap(model.samples, model.diagonal, pose.pose, tree_, options,
-                                  tuning.model_samples, used);
+                                  samples.of_model, used);
   const auto marks = kernels::samples_on_model(*listed.tree, model.diagonal, pose.pose,
-                                               scene_.samples, options, tuning.scene_samples, used);
+                                               scene_.samples, options, samples.of_scene, used);
   pose.explained = static_cast<double>(std::ranges::count(marks, 1)) /
                    static_cast<double>(std::max<std::size_t>(marks.size(), 1));
   pose.score = score_of(pose, tuning_.score);
@@ -121,9 +125,9 @@ std::vector<ExaminedPose> PoseExaminer::better_symmetric_poses(const ListedModel
   };
   const double enough = tuning.enough * look(pose.pose);
   std::vector<ExaminedPose> tried;
-  for (const Similarity& other :
-       kernels::symmetric_poses(model.samples, model.diagonal, pose.pose, tree_,
-                                close_overlap(model, pose.pose), tuning_.measurement.model_samples))
+  for (const Similarity& other : kernels::symmetric_poses(model.samples, model.diagonal, pose.pose,
+                                                          tree_, close_overlap(model, pose.pose),
+                                                          tuning_.measurement.samples.of_model))
     if (const double agreement = look(other); agreement > enough)
       tried.push_back(
           {.listed = pose.listed, .pose = other, .cluster = pose.cluster, .agreement = agreement});
@@ -134,6 +138,37 @@ std::vector<ExaminedPose> PoseExaminer::better_symmetric_poses(const ListedModel
   }
   std::erase_if(tried, [&](const ExaminedPose& other) { return other.score <= pose.score; });
   return tried;
+}
+
+std::optional<ExaminedPose> PoseExaminer::better_scaled_pose(const ListedModel& listed,
+                                                             const ExaminedPose& pose) const {
+  const RecognitionModel& model = listed.record;
+  const ScaledPoseTuning& tuning = tuning_.scaled_poses;
+  const auto motion = kernels::free_scaling(model.samples, model.diagonal, pose.pose, tree_,
+                                            close_overlap(model, pose.pose),
+                                            tuning_.measurement.samples.of_model, tuning.most_held);
+  if (!motion) return std::nullopt;
+  ExaminedPose best = pose;
+  measure_by(tuning.samples, listed, best, {});
+  double way = 0;
+  const auto look = [&](double log_scale) {
+    ExaminedPose tried = pose;
+    tried.pose = motion->scaled(log_scale) * pose.pose;
+    measure_by(tuning.samples, listed, tried, {});
+    if (tried.score <= best.score) return;
+    best = tried;
+    way = log_scale;
+  };
+  const auto look_about = [&](double middle, double step) {
+    look(middle - step);
+    look(middle + step);
+  };
+  for (const double step : tuning.ways) look_about(0, step);
+  for (const double step : tuning.finer) look_about(way, step);
+  if (way == 0) return std::nullopt;
+  verify(listed, best);
+  if (best.score <= tuning.gain * pose.score) return std::nullopt;
+  return best;
 }
 
 kernels::OrientedFeatures PoseExaminer::features_off(std::span<const std::uint8_t> marked) const {
@@ -170,18 +205,21 @@ void PoseExaminer::refine_roughly(const ListedModel& listed, ExaminedPose& pose)
                                    tuning_.refinement.rough);
 }
 
+bool PoseExaminer::agree(const RecognitionModel& model, const Similarity& a, const Similarity& b,
+                         const kernels::PoseTolerance& tolerance) {
+  const Vector3d centre = model.centre.cast<double>();
+  return std::abs(std::log(a.scale / b.scale)) < tolerance.log_scale &&
+         (a.apply(centre) - b.apply(centre)).norm() <
+             tolerance.distance * model.diagonal * b.scale &&
+         kernels::rotation_between(a.rotation, b.rotation) < tolerance.angle;
+}
+
 /// Keeps the first of several poses that have become the same.
 void PoseExaminer::leave_out_repeated(ListedModel& listed) const {
-  const RecognitionModel& model = listed.record;
-  const kernels::PoseTolerance& same = tuning_.refinement.same;
-  const Vector3d centre = model.centre.cast<double>();
   std::vector<ExaminedPose> different;
   for (const ExaminedPose& pose : listed.poses)
     if (std::ranges::none_of(different, [&](const ExaminedPose& d) {
-          return std::abs(std::log(d.pose.scale / pose.pose.scale)) < same.log_scale &&
-                 (d.pose.apply(centre) - pose.pose.apply(centre)).norm() <
-                     same.distance * model.diagonal * pose.pose.scale &&
-                 kernels::rotation_between(d.pose.rotation, pose.pose.rotation) < same.angle;
+          return agree(listed.record, d.pose, pose.pose, tuning_.refinement.same);
         }))
       different.push_back(pose);
   listed.poses = std::move(different);

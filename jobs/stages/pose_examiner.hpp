@@ -71,11 +71,22 @@ class PoseExaminer {
   /// Returns the features of the scene whose nearest sample is not marked.
   kernels::OrientedFeatures features_off(std::span<const std::uint8_t> marked) const;
 
+  /// Tells whether two poses of a model differ by less than a tolerance.
+  static bool agree(const kernels::RecognitionModel& model, const kernels::Similarity& a,
+                    const kernels::Similarity& b, const kernels::PoseTolerance& tolerance);
+
   /// Returns poses with a better score that a nearly symmetric model may have instead of this one.
   std::vector<ExaminedPose> better_symmetric_poses(const ListedModel& listed,
                                                    const ExaminedPose& pose) const;
 
+  /// Returns the pose with the best score to which the model grows or shrinks along the surface
+  /// that matches it. The result is empty unless the score is clearly better.
+  std::optional<ExaminedPose> better_scaled_pose(const ListedModel& listed,
+                                                 const ExaminedPose& pose) const;
+
  private:
+  void measure_by(const MeasuredSamples& samples, const ListedModel& listed, ExaminedPose& pose,
+                  std::span<const std::uint8_t> used) const;
   kernels::OverlapOptions close_overlap(const kernels::RecognitionModel& model,
                                         const kernels::Similarity& pose) const;
   double agreement(const kernels::RecognitionModel& model, const kernels::Similarity& pose,

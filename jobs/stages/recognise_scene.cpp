@@ -49,6 +49,7 @@ class Recogniser {
 
  private:
   const RefinementEffort& effort() const {
+    if (scene_.eye) return tuning_.refinement.of_view;
     return pairs_.empty() ? tuning_.refinement.usual : tuning_.refinement.of_pairs;
   }
 
@@ -88,7 +89,9 @@ class Recogniser {
     choose_poses();
     for_each(poses_.size(),
              [this](std::size_t i) { examiner_.verify(shortlist_[poses_[i].listed], poses_[i]); });
+    poses_ = best_different(tuning_.refinement.same, poses_.size());
     try_symmetric_poses();
+    if (scene_.eye) try_scaled_poses();
     std::erase_if(
         poses_, [this](const ExaminedPose& pose) { return !options_.scale.has(pose.pose.scale); });
     std::ranges::stable_sort(poses_, std::ranges::greater(), &ExaminedPose::score);
@@ -272,16 +275,54 @@ class Recogniser {
     });
   }
 
+  /// Returns the poses with the best scores, at most `most`. Poses of a model that agree count as
+  /// one.
+  std::vector<ExaminedPose> best_different(const kernels::PoseTolerance& tolerance,
+                                           std::size_t most) {
+    std::ranges::stable_sort(poses_, std::ranges::greater(), &ExaminedPose::score);
+    std::vector<ExaminedPose> different;
+    for (const ExaminedPose& pose : poses_) {
+      if (different.size() == most) break;
+      const RecognitionModel& model = shortlist_[pose.listed].record;
+      if (std::ranges::none_of(different, [&](const ExaminedPose& better) {
+            return better.listed == pose.listed &&
+                   PoseExaminer::agree(model, better.pose, pose.pose, tolerance);
+          }))
+        different.push_back(pose);
+    }
+    return different;
+  }
+
+  /// Adds what `better(model, pose)` returns for each of some poses.
+  template <typename Better>
+  void add_better(const std::vector<ExaminedPose>& tried, const Better& better) {
+    std::vector<std::vector<ExaminedPose>> found(tried.size());
+    for_each(tried.size(), [&](std::size_t i) {
+      for (const ExaminedPose& pose : better(shortlist_[tried[i].listed], tried[i]))
+        found[i].push_back(pose);
+    });
+    for (const std::vector<ExaminedPose>& of_pose : found)
+      poses_.insert(poses_.end(), of_pose.begin(), of_pose.end());
+  }
+
   /// Adds better poses of models that are nearly symmetric.
   void try_symmetric_poses() {
-    std::ranges::stable_sort(poses_, std::ranges::greater(), &ExaminedPose::score);
-    std::vector<std::vector<ExaminedPose>> better(
-        std::min(tuning_.symmetric_poses.tried, poses_.size()));
-    for_each(better.size(), [&](std::size_t i) {
-      better[i] = examiner_.better_symmetric_poses(shortlist_[poses_[i].listed], poses_[i]);
+    const SymmetricPoseTuning& tuning = tuning_.symmetric_poses;
+    add_better(best_different(tuning.one_place, tuning.tried),
+               [this](const ListedModel& listed, const ExaminedPose& pose) {
+                 return examiner_.better_symmetric_poses(listed, pose);
+               });
+  }
+
+  /// Adds better poses of models whose size only their rims tell.
+  void try_scaled_poses() {
+    const ScaledPoseTuning& tuning = tuning_.scaled_poses;
+    std::vector<ExaminedPose> tried = best_different(tuning_.refinement.same, tuning.tried);
+    std::erase_if(tried, [&](const ExaminedPose& pose) { return pose.score < tuning.least_score; });
+    add_better(tried, [this](const ListedModel& listed, const ExaminedPose& pose) {
+      const std::optional<ExaminedPose> better = examiner_.better_scaled_pose(listed, pose);
+      return better ? std::vector{*better} : std::vector<ExaminedPose>();
     });
-    for (const std::vector<ExaminedPose>& of_pose : better)
-      poses_.insert(poses_.end(), of_pose.begin(), of_pose.end());
   }
 
   Candidate candidate_of(const ExaminedPose& pose) const {

@@ -82,6 +82,9 @@ struct RefinementTuning {
   RefinementEffort usual = {.coarse = 5, .refined = 4, .together = 60};
   /// The effort if pairs were matched, which say little by themselves.
   RefinementEffort of_pairs = {.coarse = 8, .refined = 6, .together = 120};
+  /// The effort in a scene that was seen from one place, where a right pose of an object that is
+  /// mostly hidden agrees with little of the scene before it is refined.
+  RefinementEffort of_view = {.coarse = 16, .refined = 6, .together = 80};
   std::int64_t coarse_samples = 200;  ///< Number of samples compared before rough refinement.
   std::int64_t middle_samples = 400;  ///< Number of samples compared after rough refinement.
   std::size_t poses_by_weight = 3;    ///< Number of poses added by the weight of clusters.
@@ -95,24 +98,46 @@ struct RefinementTuning {
   kernels::PoseTolerance same = {.log_scale = 0.03, .distance = 0.02, .angle = 0.06};
 };
 
+/// The number of samples by which a pose is measured.
+struct MeasuredSamples {
+  std::int64_t of_model;  ///< Number of samples of the model that are compared.
+  std::int64_t of_scene;  ///< Number of samples of the scene that are compared.
+};
+
 /// Step 6: refined poses are measured, and get their score. Noise and triangulation grow with the
 /// edges: matching surfaces of coarse scans lie farther apart.
 struct MeasurementTuning {
-  std::int64_t model_samples = 2000;  ///< Number of samples of the model that are compared.
-  std::int64_t scene_samples = 4000;  ///< Number of samples of the scene that are compared.
-  double match_edges = 0.5;           ///< Tolerance in mean edge lengths of the coarser surface.
-  double widest_match = 0.03;         ///< Largest tolerance, in diagonals of the model.
+  MeasuredSamples samples = {.of_model = 2000, .of_scene = 4000};  ///< How many are compared.
+  double match_edges = 0.5;    ///< Tolerance in mean edge lengths of the coarser surface.
+  double widest_match = 0.03;  ///< Largest tolerance, in diagonals of the model.
 };
 
 /// Step 7: symmetric poses of the best poses are tried. A cup may have been found with its handle
 /// anywhere.
 struct SymmetricPoseTuning {
-  std::size_t tried = 6;       ///< Number of best poses whose symmetric poses are tried.
-  std::size_t per_pose = 3;    ///< Number of symmetric poses of one pose that are refined.
+  std::size_t tried = 8;     ///< Number of best poses whose symmetric poses are tried.
+  std::size_t per_pose = 6;  ///< Number of symmetric poses of one pose that are refined.
+  /// Of poses of a model at one place, however turned, only the best one is tried.
+  kernels::PoseTolerance one_place = {.log_scale = 0.2, .distance = 0.2, .angle = 4};
   std::int64_t samples = 200;  ///< Number of samples of the model that are compared.
   /// The tolerance is loose, as turns are tried in steps.
   kernels::OverlapOptions overlap = {.match = 0.03, .conflict = 0.06, .min_cosine = 0.6};
   double enough = 0.7;  ///< Least share of the agreement of the first pose, to go on.
+};
+
+/// Step 7, in a scene that was seen from one place: models of the best poses grow and shrink along
+/// the surface that matches them, until they have the best score. Three faces of a box tell its
+/// size by their rims alone, which refinement does not see.
+struct ScaledPoseTuning {
+  std::size_t tried = 8;      ///< Number of best poses that are tried.
+  double least_score = 0.05;  ///< A pose with a lower score is not tried.
+  double most_held = 0.03;    ///< See Slippage::free_scaling.
+  MeasuredSamples samples = {.of_model = 600, .of_scene = 1200};  ///< How many are compared.
+  /// Logarithms of the scales that are tried, with either sign.
+  std::vector<double> ways = {0.05, 0.1, 0.15, 0.2, 0.3, 0.4};
+  /// Then smaller ways from the best one.
+  std::vector<double> finer = {0.025, 0.0125, 0.006};
+  double gain = 1.05;  ///< The least ratio of the new score to the old one.
 };
 
 /// Step 8: the best pose is an object; the others are measured against the rest of the scene.
@@ -196,6 +221,7 @@ struct RecognitionTuning {
   RefinementTuning refinement = {};
   MeasurementTuning measurement = {};
   SymmetricPoseTuning symmetric_poses = {};
+  ScaledPoseTuning scaled_poses = {};
   ObjectTuning objects = {};
   SecondLookTuning second_look = {};
   ThirdLookTuning third_look = {};

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nanoflann.hpp>
 #include <numbers>
@@ -202,6 +203,29 @@ class ViewCount {
   std::int64_t opposed_ = 0;
 };
 
+/// Returns how those of the first n samples of a posed model that match can slip.
+Slippage slippage_of_match(const PosedModel& posed, std::size_t n) {
+  std::vector<OrientedPoint> matched;
+  for (std::size_t i = 0; i < n; ++i)
+    if (const Contact c = posed.contact(i, posed.tolerance()); c.matches)
+      matched.push_back(c.posed);
+  return Slippage(matched);
+}
+
+/// Returns the 23 rotations that bring a cube onto itself, without the identity.
+std::vector<Eigen::Matrix3d> turns_of_a_cube() {
+  std::vector<Eigen::Matrix3d> turns;
+  std::array<int, 3> axis = {0, 1, 2};
+  do {
+    for (unsigned signs = 0; signs < 8; ++signs) {
+      Eigen::Matrix3d turn = Eigen::Matrix3d::Zero();
+      for (int i = 0; i < 3; ++i) turn(axis[i], i) = (signs >> i & 1) != 0 ? -1 : 1;
+      if (turn.determinant() > 0 && !turn.isIdentity()) turns.push_back(turn);
+    }
+  } while (std::ranges::next_permutation(axis).found);
+  return turns;
+}
+
 Similarity turn_about(const Axis& axis, double angle) {
   Similarity turn;
   turn.rotation = Eigen::AngleAxisd(angle, axis.direction).toRotationMatrix();
@@ -301,20 +325,26 @@ std::vector<Similarity> symmetric_poses(const SurfaceSamples& model, double diag
     const Vector3d arm = model.points[i].cast<double>() - middle;
     spread += arm * arm.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(spread);
-  for (int axis = 0; axis < 3; ++axis)
+  const Eigen::Matrix3d axes =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
+  for (const Eigen::Matrix3d& turn : turns_of_a_cube()) {
+    const Eigen::Matrix3d rotation = axes * turn * axes.transpose();
     result.push_back(pose *
-                     turn_about({middle, principal.eigenvectors().col(axis)}, std::numbers::pi));
-
-  const PosedModel posed(model, diagonal, pose, tree, options);
-  std::vector<OrientedPoint> matched;
-  for (std::size_t i = 0; i < n; ++i)
-    if (const Contact c = posed.contact(i, posed.tolerance()); c.matches)
-      matched.push_back(c.posed);
-  if (const std::optional<Axis> axis = Slippage(matched).free_rotation(kFree))
+                     Similarity{.rotation = rotation, .translation = middle - rotation * middle});
+  }
+  const Slippage matched = slippage_of_match(PosedModel(model, diagonal, pose, tree, options), n);
+  if (const std::optional<Axis> axis = matched.free_rotation(kFree))
     for (int k = 1; k < kTurns; ++k)
       result.push_back(turn_about(*axis, 2 * std::numbers::pi * k / kTurns) * pose);
   return result;
+}
+
+std::optional<ScalingMotion> free_scaling(const SurfaceSamples& model, double diagonal,
+                                          const Similarity& pose, const SampleTree& tree,
+                                          const OverlapOptions& options, std::int64_t count,
+                                          double most) {
+  const PosedModel posed(model, diagonal, pose, tree, options);
+  return slippage_of_match(posed, bounded(count, model)).free_scaling(most);
 }
 
 std::vector<std::uint8_t> samples_on_model(const SampleTree& model, double diagonal,

@@ -3,12 +3,14 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "kernels/recognition/depth_map.hpp"
 #include "kernels/recognition/recognition_model.hpp"
 #include "kernels/recognition/similarity.hpp"
+#include "kernels/recognition/slippage.hpp"
 
 namespace semigeo::kernels {
 
@@ -81,12 +83,20 @@ Overlap overlap(const SurfaceSamples& model, double diagonal, const Similarity& 
                 const SampleTree& scene, const OverlapOptions& options, std::int64_t count,
                 std::span<const std::uint8_t> used = {});
 
-/// Returns other poses in which a nearly symmetric model may fit as well as in this one: half turns
-/// about the principal axes of its samples, and, where the surface that matches can turn along
-/// itself, a full circle of turns about its axis. `options` tell what matches.
+/// Returns other poses in which a nearly symmetric model may fit as well as in this one: the 23
+/// turns of a cube that lies along the principal axes of its samples, and, where the surface that
+/// matches can turn along itself, a full circle of turns about its axis. `options` tell what
+/// matches.
 std::vector<Similarity> symmetric_poses(const SurfaceSamples& model, double diagonal,
                                         const Similarity& pose, const SampleTree& scene,
                                         const OverlapOptions& options, std::int64_t count);
+
+/// Returns how a posed model can grow and shrink along the surface that matches it; see
+/// `Slippage::free_scaling`. `options` tell what matches.
+std::optional<ScalingMotion> free_scaling(const SurfaceSamples& model, double diagonal,
+                                          const Similarity& pose, const SampleTree& scene,
+                                          const OverlapOptions& options, std::int64_t count,
+                                          double most);
 
 /// Marks the scene's samples that lie on the posed model: result[i] = 1. Only the first `count`
 /// samples with used[i] = 0 are examined. `model` holds the samples of the model.

@@ -35,6 +35,10 @@ PoseVotes::PoseVotes(std::span<const PoseVote> votes, const Vector3d& centre, do
   placements_.reserve(votes.size());
   for (const PoseVote& vote : votes) placements_.push_back(placement(vote.pose, vote.weight));
   std::ranges::stable_sort(placements_, {}, &Placement::log_scale);
+  columns_.resize(std::ssize(placements_), Eigen::NoChange);
+  for (std::ptrdiff_t i = 0; i < std::ssize(placements_); ++i)
+    columns_.row(i) << placements_[i].centre.transpose().array(),
+        placements_[i].rotation.transpose().array();
 }
 
 std::vector<PoseCluster> PoseVotes::clusters(const ClusterOptions& options) const {
@@ -86,11 +90,25 @@ void PoseVotes::for_agreeing(const Placement& seed, const PoseTolerance& toleran
   const auto width = static_cast<float>(tolerance.log_scale);
   const float reach = static_cast<float>(tolerance.distance) * diagonal_ * std::exp(seed.log_scale);
   const auto cosine = static_cast<float>(std::cos(tolerance.angle / 2));
-  auto p = std::ranges::lower_bound(placements_, seed.log_scale - width, {}, &Placement::log_scale);
-  for (; p != placements_.end() && p->log_scale <= seed.log_scale + width; ++p)
-    if ((p->centre - seed.centre).squaredNorm() <= reach * reach &&
-        std::abs(p->rotation.dot(seed.rotation)) >= cosine)
-      take(*p);
+  const auto first =
+      std::ranges::lower_bound(placements_, seed.log_scale - width, {}, &Placement::log_scale);
+  const auto last = std::ranges::upper_bound(first, placements_.end(), seed.log_scale + width, {},
+                                             &Placement::log_scale);
+  constexpr std::ptrdiff_t kBlock = 256;
+  Eigen::Array<float, kBlock, 1> margin;  // by which the limit that is nearer is kept
+  const std::ptrdiff_t end = last - placements_.begin();
+  for (std::ptrdiff_t i = first - placements_.begin(); i < end; i += kBlock) {
+    const std::ptrdiff_t n = std::min(kBlock, end - i);
+    const auto p = columns_.middleRows(i, n);
+    margin.head(n) = (reach * reach - (p.col(0) - seed.centre[0]).square() -
+                      (p.col(1) - seed.centre[1]).square() - (p.col(2) - seed.centre[2]).square())
+                         .min((p.col(3) * seed.rotation[0] + p.col(4) * seed.rotation[1] +
+                               p.col(5) * seed.rotation[2] + p.col(6) * seed.rotation[3])
+                                  .abs() -
+                              cosine);
+    for (std::ptrdiff_t k = 0; k < n; ++k)
+      if (margin[k] >= 0) take(placements_[i + k]);
+  }
 }
 
 /// Returns seeds: half of them are the heaviest votes, half are spread evenly over the rest. Of

@@ -36,7 +36,7 @@ struct ClusterOptions {
   int most = 120;    ///< Greatest number of clusters.
 };
 
-/// Holds the votes of one model, 40 bytes each. Source: thesis 4.6. Differs: poses are
+/// Holds the votes of one model, 80 bytes each. Source: thesis 4.6. Differs: poses are
 /// similarities, and a cluster is made of all poses that agree with a seed, the best seeds first.
 /// In the thesis clusters grow from poses in the order in which they come.
 class PoseVotes {
@@ -71,6 +71,8 @@ class PoseVotes {
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
   float diagonal_ = 0;
   std::vector<Placement> placements_;  ///< Sorted by scale, so that what may agree is one range.
+  /// The centres (3) and rotations (4) of the placements, column by column, for vectors.
+  Eigen::Array<float, Eigen::Dynamic, 7> columns_;
 };
 
 }  // namespace semigeo::kernels

@@ -1,6 +1,7 @@
 #include "kernels/recognition/slippage.hpp"
 
 #include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -13,6 +14,8 @@ using Matrix7d = Eigen::Matrix<double, 7, 7>;
 /// The least share of the rotation in the squared length of a motion. With less, the axis lies more
 /// than three radii away, or there is none.
 constexpr double kLeastTurn = 0.1;
+/// The least share of the scaling in the squared length of a motion.
+constexpr double kLeastScaling = 0.1;
 
 }  // namespace
 
@@ -20,6 +23,16 @@ Constraint plane_constraint(const Vector3d& arm, const Vector3d& normal) {
   Constraint constraint;
   constraint << arm.cross(normal), normal, arm.dot(normal);
   return constraint;
+}
+
+Similarity ScalingMotion::scaled(double log_scale) const {
+  Similarity motion;
+  const Vector3d turned = log_scale * turn;
+  if (turned.norm() > 0)
+    motion.rotation = Eigen::AngleAxisd(turned.norm(), turned.normalized()).toRotationMatrix();
+  motion.scale = std::exp(log_scale);
+  motion.translation = fixed_point - motion.scale * (motion.rotation * fixed_point);
+  return motion;
 }
 
 Slippage::Slippage(std::span<const OrientedPoint> surface) {
@@ -38,7 +51,7 @@ Slippage::Slippage(std::span<const OrientedPoint> surface) {
         share);
   const Eigen::SelfAdjointEigenSolver<Matrix7d> solver(sum);
   held_ = solver.eigenvalues().cwiseMax(0);
-  least_ = solver.eigenvectors().col(0);
+  motions_ = solver.eigenvectors();
 }
 
 double Slippage::stability() const {
@@ -46,11 +59,25 @@ double Slippage::stability() const {
 }
 
 std::optional<Axis> Slippage::free_rotation(double most) const {
-  const Vector3d turn = least_.head<3>();
-  const Vector3d shift = least_.segment<3>(3);
+  const Vector3d turn = motions_.col(0).head<3>();
+  const Vector3d shift = motions_.col(0).segment<3>(3);
   if (held_[0] > most || turn.squaredNorm() < kLeastTurn) return std::nullopt;
   // On the axis, turn x arm + shift has no part across the axis.
   return Axis{middle_ + radius_ * turn.cross(shift) / turn.squaredNorm(), turn.normalized()};
+}
+
+std::optional<ScalingMotion> Slippage::free_scaling(double most) const {
+  Constraint motion = Constraint::Zero();  // scaling alone, projected onto what is free
+  for (int i = 0; i < motion.size() && held_[i] <= most; ++i)
+    motion += motions_(6, i) * motions_.col(i);
+  const double scaling = motion[6];
+  if (scaling < kLeastScaling) return std::nullopt;
+  const Vector3d turn = motion.head<3>() / scaling;
+  const Vector3d shift = motion.segment<3>(3) / scaling;
+  // Where the arm does not move: arm + turn x arm + shift = 0.
+  Eigen::Matrix3d velocity;
+  velocity << 1, -turn.z(), turn.y(), turn.z(), 1, -turn.x(), -turn.y(), turn.x(), 1;
+  return ScalingMotion{middle_ - radius_ * velocity.inverse() * shift, turn};
 }
 
 }  // namespace semigeo::kernels

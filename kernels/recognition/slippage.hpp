@@ -4,6 +4,8 @@
 #include <optional>
 #include <span>
 
+#include "kernels/recognition/similarity.hpp"
+
 namespace semigeo::kernels {
 
 /// Holds a point of a surface and the unit normal there.
@@ -26,6 +28,15 @@ struct Axis {
   Eigen::Vector3d direction;  ///< Of unit length.
 };
 
+/// Describes a motion that scales, and may turn, about the one point that it leaves where it is.
+struct ScalingMotion {
+  Eigen::Vector3d fixed_point;
+  Eigen::Vector3d turn;  ///< Rotation vector, in radians for a factor of e.
+
+  /// Returns the motion that scales by exp(log_scale).
+  Similarity scaled(double log_scale) const;
+};
+
 /// Tells in which ways a surface can slip along itself, that is, by which motions its points stay
 /// in their planes. Seven numbers say how firmly it is held in as many motions; 0 means that
 /// it slips. They have no unit, because lengths are measured in radii of the surface. A surface of
@@ -44,11 +55,17 @@ class Slippage {
   /// motion that is held least is a rotation, and is held by no more than `most`.
   std::optional<Axis> free_rotation(double most) const;
 
+  /// Returns how the surface can grow and shrink along itself: three faces of a box can, about
+  /// their corner, and a cone about its apex. Of all motions that are held by no more than `most`,
+  /// it is the one that scales most. The result is empty if less than a tenth of it is scaling.
+  std::optional<ScalingMotion> free_scaling(double most) const;
+
  private:
   Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();
   double radius_ = 0;
-  Constraint held_ = Constraint::Zero();   ///< The seven numbers, ascending.
-  Constraint least_ = Constraint::Zero();  ///< The motion that is held least, of length 1.
+  Constraint held_ = Constraint::Zero();  ///< The seven numbers, ascending.
+  /// Column i is the motion that held_[i] belongs to, of length 1.
+  Eigen::Matrix<double, 7, 7> motions_ = Eigen::Matrix<double, 7, 7>::Zero();
 };
 
 }  // namespace semigeo::kernels

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <random>
 
 namespace semigeo::jobs {
 namespace {
@@ -83,6 +85,68 @@ TEST(ViewScoreTest, LittleThatMatchesIsWorthLess) {
   pose.explained = 0.025;
   EXPECT_NEAR(view_score_of(pose, {}), std::pow(0.25, ViewTuning{}.score.explained), 1e-9);
   EXPECT_EQ(view_score_of({.pose = {}}, {}), 0);
+}
+
+/// Samples of a box of 2 x 1.5 x 1 about the origin, spread at random over its upper three faces or
+/// all six.
+kernels::RecognitionModel box(int faces, std::size_t count) {
+  const Eigen::Vector3d half(1, 0.75, 0.5);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> along(-1, 1);
+  std::discrete_distribution<int> normal_axis({1.5, 2, 3});  // by area
+  kernels::RecognitionModel model;
+  for (std::size_t i = 0; i < count; ++i) {
+    const int axis = normal_axis(random);
+    const double side = faces == 6 && along(random) < 0 ? -1 : 1;
+    Eigen::Vector3d point =
+        half.cwiseProduct(Eigen::Vector3d(along(random), along(random), along(random)));
+    point[axis] = side * half[axis];
+    model.samples.points.push_back(point.cast<float>());
+    model.samples.normals.push_back((side * Eigen::Vector3d::Unit(axis)).cast<float>());
+  }
+  const double area = 6.5 * (faces == 6 ? 2 : 1);
+  model.samples.spacing = static_cast<float>(std::sqrt(area / static_cast<double>(count)));
+  model.diagonal = 2 * half.norm();
+  model.centre.setZero();
+  return model;
+}
+
+/// Adds a floor of 8 x 8 about the box, as dense as the samples.
+void add_floor(kernels::RecognitionModel& scene) {
+  const auto steps = static_cast<int>(8 / scene.samples.spacing);
+  for (int i = 0; i < steps; ++i)
+    for (int j = 0; j < steps; ++j) {
+      const float x = -4 + 8 * (static_cast<float>(i) + 0.5F) / static_cast<float>(steps);
+      const float y = -4 + 8 * (static_cast<float>(j) + 0.5F) / static_cast<float>(steps);
+      if (std::abs(x) < 1 && std::abs(y) < 0.75F) continue;
+      scene.samples.points.emplace_back(x, y, -0.5F);
+      scene.samples.normals.push_back(Eigen::Vector3f::UnitZ());
+    }
+}
+
+/// Three faces of a box lie on those of a smaller or larger one with the same corner. Only what of
+/// them hangs over the floor, or is missing, tells the size.
+TEST(PoseExaminerTest, ABoxGrowsUntilItFillsItsFaces) {
+  kernels::RecognitionModel scene = box(3, 6000);
+  add_floor(scene);
+  scene.eye = Eigen::Vector3d(300, 300, 300);
+  const RecognitionTuning tuning;
+  const PoseExaminer examiner(scene, tuning);
+  ListedModel listed;
+  listed.record = box(6, 4000);
+  listed.tree.emplace(listed.record.samples);
+  const Eigen::Vector3d corner(1, 0.75, 0.5);
+  for (const double scale : {0.8, 1.25}) {
+    ExaminedPose pose;
+    pose.pose.scale = scale;
+    pose.pose.translation = (1 - scale) * corner;
+    examiner.measure(listed, pose, {});
+    const auto better = examiner.better_scaled_pose(listed, pose);
+    ASSERT_TRUE(better) << scale;
+    EXPECT_GT(better->score, 1.05 * pose.score);
+    EXPECT_NEAR(better->pose.scale, 1, 0.08);  // rims are as wide as samples lie apart
+    EXPECT_LT((better->pose.apply(corner) - corner).norm(), 0.03);
+  }
 }
 
 }  // namespace

@@ -109,6 +109,58 @@ TEST(Slippage, FreeTurnOfAPartIsAboutTheSameAxis) {
   EXPECT_LT(axis->point.head<2>().norm(), 0.01);
 }
 
+/// Samples of three faces of a box that meet in a corner.
+std::vector<OrientedPoint> faces_of_a_box(const Similarity& pose) {
+  std::vector<OrientedPoint> faces;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto face = surface_of(
+        [&](double u, double v) {
+          Vector3d point = Vector3d::Zero();
+          point[(axis + 1) % 3] = u;
+          point[(axis + 2) % 3] = 2 * v;
+          return point;
+        },
+        [&](double, double) -> Vector3d { return Vector3d::Unit(axis); }, pose);
+    faces.insert(faces.end(), face.begin(), face.end());
+  }
+  return faces;
+}
+
+TEST(Slippage, ThreeFacesOfABoxGrowAboutTheirCorner) {
+  std::mt19937_64 random(3);
+  for (int trial = 0; trial < 5; ++trial) {
+    const Similarity pose = random_similarity(random);
+    const auto faces = faces_of_a_box(pose);
+    const auto growth = Slippage(faces).free_scaling(1e-4);
+    ASSERT_TRUE(growth);
+    const Vector3d corner = pose.translation;
+    for (const double log_scale : {-0.3, 0.2}) {
+      const Similarity motion = growth->scaled(log_scale);
+      EXPECT_NEAR(motion.scale, std::exp(log_scale), 1e-12);
+      EXPECT_LT((motion.apply(corner) - corner).norm(), 1e-4 * pose.scale);
+      for (const OrientedPoint& p : faces) {
+        const Vector3d point = p.point.cast<double>();
+        EXPECT_LT(std::abs((motion.apply(point) - point).dot(p.normal.cast<double>())),
+                  1e-4 * pose.scale);
+      }
+    }
+  }
+}
+
+TEST(Slippage, WhatHasASizeDoesNotGrow) {
+  std::mt19937_64 random(4);
+  const Similarity pose = random_similarity(random);
+  EXPECT_FALSE(Slippage(torus(pose)).free_scaling(0.03));
+  const auto ball = [](double u, double v) -> Vector3d {
+    return std::sqrt(1 - v * v) * round(u) + up(v);
+  };
+  EXPECT_FALSE(Slippage(surface_of(ball, ball, pose)).free_scaling(0.03));
+  // A cylinder can turn and shift, but not grow.
+  const auto tube = surface_of([](double u, double v) -> Vector3d { return round(u) + up(v); },
+                               [](double u, double) { return round(u); }, pose);
+  EXPECT_FALSE(Slippage(tube).free_scaling(0.03));
+}
+
 TEST(Slippage, NothingTurnsThatIsHeldOrShifts) {
   // Three bars along the axes: nothing moves.
   std::vector<OrientedPoint> held;
