@@ -15,7 +15,7 @@
 
 #include "engine/descriptor.hpp"
 #include "io/files/atomic_file.hpp"
-#include "jobs/archive/json_value.hpp"
+#include "io/files/json_value.hpp"
 #include "jobs/archive/utc_time.hpp"
 
 namespace semigeo::jobs {
@@ -47,9 +47,9 @@ std::optional<Owner> owner_in(const std::string& text) {
     const auto document = nlohmann::json::parse(text);
     Owner owner;
     document.at("host").get_to(owner.process.host);
-    read_value(document.at("pid"), owner.process.pid);
+    io::read_value(document.at("pid"), owner.process.pid);
     document.at("boot_id").get_to(owner.process.boot_id);
-    read_value(document.at("process_started"), owner.process.started);
+    io::read_value(document.at("process_started"), owner.process.started);
     document.at("since").get_to(owner.since);
     return owner;
   } catch (const nlohmann::json::exception&) {

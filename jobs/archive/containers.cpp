@@ -4,6 +4,7 @@
 #include <set>
 
 #include "io/files/error.hpp"
+#include "io/files/json_value.hpp"
 #include "io/scans/companions.hpp"
 #include "jobs/archive/in_children.hpp"
 #include "jobs/archive/path_text.hpp"
@@ -46,12 +47,14 @@ std::string text_of(const io::ContainerListing& listing) {
 io::ContainerListing listing_from(const std::string& text) {
   const json document = json::parse(text);
   io::ContainerListing listing;
-  for (const json& member : document.at("members"))
-    listing.members.push_back({.name = unescaped(member.at(0).get<std::string>()),
-                               .bytes = member.at(1).get<std::int64_t>(),
-                               .encrypted = member.at(2).get<bool>()});
-  document.at("links").get_to(listing.links);
-  document.at("repeated").get_to(listing.repeated);
+  for (const json& member : document.at("members")) {
+    auto& read = listing.members.emplace_back();
+    read.name = unescaped(member.at(0).get<std::string>());
+    io::read_value(member.at(1), read.bytes);
+    io::read_value(member.at(2), read.encrypted);
+  }
+  io::read_value(document.at("links"), listing.links);
+  io::read_value(document.at("repeated"), listing.repeated);
   listing.error = unescaped(document.at("error").get<std::string>());
   return listing;
 }

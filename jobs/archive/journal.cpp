@@ -13,8 +13,8 @@
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
 #include "io/files/input_file.hpp"
+#include "io/files/json_value.hpp"
 #include "io/files/read_error.hpp"
-#include "jobs/archive/json_value.hpp"
 #include "jobs/archive/utc_time.hpp"
 
 namespace semigeo::jobs {
@@ -120,7 +120,7 @@ void read_event(const Json& document, std::optional<JournalEvent>& found) {
   Event event;
   if (document.at("event") != name_of(event)) return;
   for_each_field(event, [&](const char* name, auto& value) {
-    if (document.contains(name)) read_value(document.at(name), value);
+    if (document.contains(name)) io::read_value(document.at(name), value);
   });
   found = std::move(event);
 }

@@ -6,9 +6,9 @@
 
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
+#include "io/files/json_value.hpp"
 #include "io/files/read_error.hpp"
 #include "io/library/hash_library.hpp"
-#include "jobs/archive/json_value.hpp"
 #include "jobs/archive/path_text.hpp"
 #include "jobs/kinds/given_names.hpp"
 #include "jobs/kinds/merging.hpp"
@@ -36,7 +36,7 @@ static void to_json(json& object, const LibraryJobData& data) {
 
 static void from_json(const json& object, LibraryJobData& data) {
   data.models = unescaped_all(object.at("models").get<std::vector<std::string>>());
-  read_value(object.at("partitions"), data.partitions);
+  io::read_value(object.at("partitions"), data.partitions);
   data.parameters = recognition_parameters_from_json(object.at("parameters"));
 }
 

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "io/files/file_digest.hpp"
+#include "io/files/json_value.hpp"
 #include "io/library/posting_partition.hpp"
-#include "jobs/archive/json_value.hpp"
 #include "jobs/archive/path_text.hpp"
 #include "jobs/kinds/library.hpp"
 #include "jobs/kinds/merging.hpp"
@@ -33,9 +33,9 @@ static void to_json(json& object, const PartitionJobData& data) {
 
 static void from_json(const json& object, PartitionJobData& data) {
   data.models = unescaped_all(object.at("models").get<std::vector<std::string>>());
-  read_value(object.at("shapes").at(0), data.shapes.first);
-  read_value(object.at("shapes").at(1), data.shapes.end);
-  read_value(object.at("partitions"), data.partitions);
+  io::read_value(object.at("shapes").at(0), data.shapes.first);
+  io::read_value(object.at("shapes").at(1), data.shapes.end);
+  io::read_value(object.at("partitions"), data.partitions);
   data.library = unescaped(object.at("library").get<std::string>());
   data.parameters = recognition_parameters_from_json(object.at("parameters"));
 }

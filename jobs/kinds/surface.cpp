@@ -7,10 +7,10 @@
 #include "io/files/atomic_file.hpp"
 #include "io/files/error.hpp"
 #include "io/files/file_digest.hpp"
+#include "io/files/json_value.hpp"
 #include "io/files/number_text.hpp"
 #include "io/files/read_error.hpp"
 #include "io/files/small_file.hpp"
-#include "jobs/archive/json_value.hpp"
 #include "jobs/archive/scan_size.hpp"
 #include "jobs/plan/plan.hpp"
 #include "jobs/plan/typed_job_kind.hpp"
@@ -72,7 +72,8 @@ static void to_json(json& object, const SurfaceJobResult& result) {
 }
 
 static void from_json(const json& object, SurfaceJobResult& result) {
-  each_field(result, [&](const char* name, auto& value) { read_value(object.at(name), value); });
+  each_field(result,
+             [&](const char* name, auto& value) { io::read_value(object.at(name), value); });
 }
 
 static void to_json(json& object, const SurfaceJobData& data) {

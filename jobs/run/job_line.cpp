@@ -3,8 +3,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "io/files/json_value.hpp"
 #include "io/files/small_file.hpp"
-#include "jobs/archive/json_value.hpp"
 #include "jobs/archive/path_text.hpp"
 
 namespace semigeo::jobs {
@@ -58,9 +58,9 @@ JobRequest job_request_from(const std::string& line, const JobKinds& kinds) {
     job.output = text("output");
     object.at("key").get_to(job.key);
     job.data = job.kind->data_from_json(object.at("data"));
-    read_value(object.at("threads"), request.threads);
-    read_value(object.at("memory_bytes"), request.memory_bytes);
-    read_value(object.at("address_space_bytes"), request.address_space_bytes);
+    io::read_value(object.at("threads"), request.threads);
+    io::read_value(object.at("memory_bytes"), request.memory_bytes);
+    io::read_value(object.at("address_space_bytes"), request.address_space_bytes);
     request.log = text("log");
     return request;
   });
@@ -83,10 +83,11 @@ std::string to_line(const JobReply& reply) {
 JobReply job_reply_from(const std::string& line) {
   return reading("answer of a job", line, [](const json& object) {
     JobReply reply;
-    read_value(object.at("worked"), reply.worked);
+    io::read_value(object.at("worked"), reply.worked);
     if (const auto failed = object.find("failed"); failed != object.end()) {
       failed->get_to(reply.error);
-      reply.write_error = object.value("write_error", 0);
+      if (const auto error = object.find("write_error"); error != object.end())
+        io::read_value(*error, reply.write_error);
     } else if (const auto done = object.find("done"); done != object.end()) {
       reply.kind = JobReply::Kind::kDone;
       reply.result = *done;

@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "io/files/error.hpp"
+#include "io/files/json_value.hpp"
 #include "io/files/line_reader.hpp"
-#include "jobs/archive/json_value.hpp"
 #include "jobs/archive/path_text.hpp"
 
 namespace semigeo::jobs {
@@ -61,10 +61,10 @@ TaskSettings settings_from(const std::string& line) {
   const json object = json::parse(line);
   TaskSettings settings;
   settings.archive = unescaped(object.at("archive").get<std::string>());
-  read_value(object.at("threads"), settings.threads);
-  read_value(object.at("memory_bytes"), settings.memory_bytes);
+  io::read_value(object.at("threads"), settings.threads);
+  io::read_value(object.at("memory_bytes"), settings.memory_bytes);
   object.at("timeout_seconds").get_to(settings.timeout_seconds);
-  read_value(object.at("retries"), settings.retries);
+  io::read_value(object.at("retries"), settings.retries);
   object.at("fail_fast").get_to(settings.fail_fast);
   object.at("deadline").get_to(settings.deadline);
   return settings;
@@ -187,8 +187,8 @@ TaskResults read_results(const fs::path& file) try {
       JobOutcome& outcome = result.outcome;
       const json object = json::parse(line);
       object.at("seconds").get_to(outcome.seconds);
-      read_value(object.at("threads"), outcome.threads);
-      read_value(object.at("attempts"), outcome.attempts);
+      io::read_value(object.at("threads"), outcome.threads);
+      io::read_value(object.at("attempts"), outcome.attempts);
       results[unescaped(object.at("job").get<std::string>())] = std::move(result);
     } catch (const std::exception&) {
       continue;  // the output itself decides

@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "io/files/json_value.hpp"
 #include "jobs/stages/parameter.hpp"
 
 namespace semigeo::jobs {
@@ -45,10 +46,13 @@ class ParameterFromJson {
 
   template <typename Kind>
   void operator()(const Kind& kind) const {
-    json_.get_to(kind.field.edit(owner_));
+    io::read_value(json_, kind.field.edit(owner_));
   }
   void operator()(const OptionalNumber<Owner>& number) const {
-    if (json_ != number.none) number.field.edit(owner_) = json_.get<int>();
+    if (json_ == number.none) return;
+    int value = 0;
+    io::read_value(json_, value);
+    number.field.edit(owner_) = value;
   }
   void operator()(const Choice<Owner>& choice) const {
     for (std::size_t i = 0; i < choice.words.size(); ++i)

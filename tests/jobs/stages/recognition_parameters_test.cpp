@@ -23,5 +23,12 @@ TEST(RecognitionParametersTest, AreReadBack) {
         << text;
 }
 
+/// Such a number is kept as a floating-point number, which no integer can hold.
+TEST(RecognitionParametersTest, NumbersBeyond64BitsAreRefused) {
+  nlohmann::json json = json_of(RecognitionParameters{});
+  json["samples"] = 4e26;
+  EXPECT_ANY_THROW(recognition_parameters_from_json(json));
+}
+
 }  // namespace
 }  // namespace semigeo::jobs

@@ -2,7 +2,7 @@
 
 #include <concepts>
 
-namespace semigeo::jobs {
+namespace semigeo::io {
 
 /// Reads a value of a JSON document. A whole number must be written as one: a number beyond 64 bits
 /// is kept as a floating-point number, which may lie outside of all whole numbers. Throws
@@ -14,4 +14,4 @@ void read_value(const Json& from, Value& value) {
   from.get_to(value);
 }
 
-}  // namespace semigeo::jobs
+}  // namespace semigeo::io

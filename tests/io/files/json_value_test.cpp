@@ -1,11 +1,11 @@
-#include "jobs/archive/json_value.hpp"
+#include "io/files/json_value.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
-namespace semigeo::jobs {
+namespace semigeo::io {
 namespace {
 
 template <typename Value>
@@ -35,4 +35,4 @@ TEST(JsonValue, OtherValuesArriveAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace semigeo::jobs
+}  // namespace semigeo::io
