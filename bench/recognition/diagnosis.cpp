@@ -36,12 +36,7 @@ std::int64_t shared_features(const RecognitionModel& model, const RecognitionMod
 }
 
 bool agree(const RecognitionModel& model, const Similarity& a, const Similarity& b) {
-  const kernels::PoseTolerance tolerance;
-  const Eigen::Vector3d centre = model.centre.cast<double>();
-  return std::abs(std::log(a.scale / b.scale)) < tolerance.log_scale &&
-         (a.apply(centre) - b.apply(centre)).norm() <
-             tolerance.distance * model.diagonal * b.scale &&
-         kernels::rotation_between(a.rotation, b.rotation) < tolerance.angle;
+  return jobs::PoseExaminer::agree(model, a, b, {});
 }
 
 }  // namespace
