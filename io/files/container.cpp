@@ -216,7 +216,8 @@ void ContainerReader::fail_listing() {
   const std::string message = archive_->message();
   if (is_about_encryption(message)) throw Error(container_, "", "is encrypted", kDecrypt);
   if (members_ == 0) refuse(container_);
-  throw Error(container_, "behind member " + name_,
+  const std::string last = name_.empty() ? "number " + std::to_string(members_) : name_;
+  throw Error(container_, "behind member " + last,
               "the container is damaged" + in_brackets(message), kCopyAgain);
 }
 

@@ -131,7 +131,8 @@ ScanDigest digest_from(const json& member) {
   ScanDigest digest{.xxh3 = member.at(1).get<std::string>(),
                     .error = unescaped(member.at(2).get<std::string>()),
                     .companions = {},
-                    .companion_bytes = member.at(4).get<std::uintmax_t>()};
+                    .companion_bytes = 0};
+  io::read_value(member.at(4), digest.companion_bytes);
   for (std::string& path : unescaped_all(member.at(3).get<std::vector<std::string>>()))
     digest.companions.emplace_back(std::move(path));
   return digest;

@@ -47,6 +47,15 @@ std::string reason_to_ask(const Leftovers& leftovers) {
          "is mounted, or give --force if they are gone for good";
 }
 
+std::string reason_to_look_again(const Leftovers& leftovers) {
+  if (leftovers.unknown.empty()) return "";
+  return std::string(leftovers.unknown.front().what()) + ": whether " +
+         (leftovers.unknown.size() == 1
+              ? "this scan is"
+              : "this and " + counted(std::ssize(leftovers.unknown) - 1, "other scan") + " are") +
+         " gone is not known, so what is of them stays";
+}
+
 std::string prune_command(const fs::path& archive, const std::vector<fs::path>& folders) {
   std::string text = "semigeo prune " + shell_word(archive.string());
   for (const fs::path& folder : folders) text += ' ' + shell_word(folder.string());

@@ -19,6 +19,10 @@ nlohmann::json leftovers_json(const std::vector<Leftover>& leftovers);
 /// Returns the sentence that says why nothing is removed without --force, or an empty text.
 std::string reason_to_ask(const Leftovers& leftovers);
 
+/// Returns the sentence about scans of which it is not known whether they are gone, or an empty
+/// text.
+std::string reason_to_look_again(const Leftovers& leftovers);
+
 /// Returns the command that removes the leftovers of scans in the folders.
 std::string prune_command(const std::filesystem::path& archive,
                           const std::vector<std::filesystem::path>& folders);

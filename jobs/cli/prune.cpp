@@ -23,7 +23,9 @@ struct PruneOptions {
   bool json = false;
 };
 
-void print_leftovers(const PruneOptions& options, const std::vector<Leftover>& leftovers) {
+/// Prints what was or would be removed; `all` is whether that is all there is.
+void print_leftovers(const PruneOptions& options, const std::vector<Leftover>& leftovers,
+                     bool all) {
   if (options.json) {
     print_document({{options.dry_run ? "would_remove" : "removed", leftovers_json(leftovers)}});
     return;
@@ -32,7 +34,7 @@ void print_leftovers(const PruneOptions& options, const std::vector<Leftover>& l
   for (const Leftover& leftover : leftovers)
     print(action, ": ", leftover.files.front(), ": its scan is gone: ", leftover.scan, "\n");
   if (leftovers.empty()) {
-    print("nothing to remove: every scan that the archive knows there is where it was\n");
+    if (all) print("nothing to remove: every scan that the archive knows there is where it was\n");
     return;
   }
   print(action, ": ", counts_in_words(leftovers), "\n");
@@ -68,9 +70,17 @@ int prune(const PruneOptions& options) {
     complain(ask);
     if (!options.dry_run) return kUsage;
   }
-  if (!options.dry_run) remove_leftovers(options.archive, leftovers.list);
-  print_leftovers(options, leftovers.list);
-  return kAllDone;
+  const std::string look_again = reason_to_look_again(leftovers);
+  Removal removal;
+  if (options.dry_run)
+    removal.removed = leftovers.list;
+  else
+    removal = remove_leftovers(options.archive, leftovers);
+  const bool all = removal.failures.empty() && look_again.empty();
+  print_leftovers(options, removal.removed, all);
+  for (const io::Error& failure : removal.failures) complain(failure);
+  if (!look_again.empty()) complain(look_again);
+  return all ? kAllDone : kSomeFailed;
 }
 
 }  // namespace
@@ -90,7 +100,7 @@ void add_prune(CLI::App& app, int& exit_code) {
       "recognised in scenes that are gone. If a folder does not exist, or if all scans of a "
       "folder\n"
       "are gone, nothing is removed: its disk may not be mounted. Exit codes: 0 done, 1 something\n"
-      "could not be removed, 2 refused, 73 a run has the archive.\n");
+      "could not be removed or looked for, 2 refused, 73 a run has the archive.\n");
   command->add_option("archive", options->archive, "The archive")->required();
   command
       ->add_option("folders", options->folders,

@@ -47,6 +47,7 @@ class Pruning {
     std::set<std::string> in_use;
     for (const PlannedJob& planned : surfaces) in_use.insert(planned.job.name);
     found_ = find_leftovers(options_.archive, folders_, in_use);
+    left_ = found_.list;
   }
 
   /// Takes out the models whose datasets are going to be removed.
@@ -58,27 +59,34 @@ class Pruning {
     std::erase_if(models, [&](const LibraryModel& model) { return gone.contains(model.name); });
   }
 
-  /// Removes the leftovers. The jobs run even if they cannot be removed.
+  /// Removes the leftovers. The jobs run even if some cannot be removed.
   void remove() {
     if (!options_.prune) return;
     if (!found_.emptied.empty()) complain(reason_to_ask(found_));
+    if (!found_.unknown.empty()) complain(reason_to_look_again(found_));
     if (!removes()) return;
     try {
-      remove_leftovers(options_.archive, found_.list);
-      removed_ = true;
+      Removal removal = remove_leftovers(options_.archive, found_);
+      removed_ = std::move(removal.removed);
+      left_ = std::move(removal.left);
+      for (const io::Error& failure : removal.failures) complain(failure);
     } catch (const io::Error& e) {
       complain(e);
     }
   }
 
   JobSummary told() const {
-    if (found_.list.empty()) return {};
-    const std::string counts = counts_in_words(found_.list);
     JobSummary told;
-    told.fields = {{removed_ ? "pruned" : "leftovers", leftovers_json(found_.list)}};
-    told.text = removed_ ? "pruned: " + counts
-                         : "leftovers: " + counts +
-                               "; to remove them: " + prune_command(options_.archive, folders_);
+    if (!removed_.empty()) {
+      told.fields.emplace_back("pruned", leftovers_json(removed_));
+      told.text = "pruned: " + counts_in_words(removed_);
+    }
+    if (!left_.empty()) {
+      told.fields.emplace_back("leftovers", leftovers_json(left_));
+      if (!told.text.empty()) told.text += '\n';
+      told.text += "leftovers: " + counts_in_words(left_) +
+                   "; to remove them: " + prune_command(options_.archive, folders_);
+    }
     return told;
   }
 
@@ -88,7 +96,8 @@ class Pruning {
   const RunOptions& options_;
   std::vector<fs::path> folders_;
   Leftovers found_;
-  bool removed_ = false;
+  std::vector<Leftover> removed_;
+  std::vector<Leftover> left_;
 };
 
 /// Writes the configuration into the archive if it has none yet, and records the scans of its

@@ -8,8 +8,6 @@
 
 #include "io/dataset/xdmf.hpp"
 #include "io/files/container.hpp"
-#include "io/files/error.hpp"
-#include "io/files/read_error.hpp"
 #include "jobs/archive/digest_cache.hpp"
 #include "jobs/archive/find_scans.hpp"
 #include "jobs/archive/links.hpp"
@@ -38,13 +36,16 @@ bool is_file_name(const std::string& name) {
   return !name.empty() && !name.starts_with('.') && fs::path(name).filename() == name;
 }
 
-/// Returns the leftover with those of the files that are there.
+/// Returns the leftover with those of the files that are there. Throws io::ReadError if that cannot
+/// be known.
 Leftover leftover_of(Leftover::Kind kind, const std::string& name, const fs::path& scan,
                      const std::vector<fs::path>& files) {
   Leftover leftover{.kind = kind, .name = name, .scan = scan, .files = {}};
   for (const fs::path& file : files) {
     std::error_code error;
     const fs::file_status status = fs::symlink_status(file, error);
+    const bool known = fs::status_known(status) || error == std::errc::filename_too_long;
+    if (!known) throw io::open_error(file, error.value());
     if (!fs::is_regular_file(status) && !fs::is_symlink(status)) continue;
     leftover.files.push_back(file);
     if (const auto bytes = fs::file_size(file, error); !error) leftover.bytes += bytes;
@@ -122,6 +123,33 @@ class Losses {
   std::set<fs::path> below_;  ///< Folders from which scans are gone.
 };
 
+/// Returns whether the scan is gone. One about which nothing can be known is not.
+bool has_gone(const fs::path& scan, std::vector<io::ReadError>& unknown) {
+  try {
+    return !io::is_there(io::outer_file(scan));
+  } catch (const io::ReadError& error) {
+    unknown.push_back(error);
+    return false;
+  }
+}
+
+/// Removes the files. Returns whether none is there any more.
+bool remove_files(const Leftover& leftover, std::vector<io::Error>& failures) {
+  const std::size_t before = failures.size();
+  for (const fs::path& file : leftover.files) {
+    std::error_code error;
+    fs::remove(file, error);
+    if (!error) continue;
+    const bool forbidden = error == std::errc::permission_denied ||
+                           error == std::errc::operation_not_permitted ||
+                           error == std::errc::read_only_file_system;
+    failures.emplace_back(
+        file, "", "cannot be removed: " + error.message(),
+        forbidden ? "check the permissions of the archive" : "check the disk of the archive");
+  }
+  return failures.size() == before;
+}
+
 /// The records of an archive.
 struct Records {
   Sources scans;
@@ -157,45 +185,50 @@ Leftovers find_leftovers(const fs::path& archive, const std::vector<fs::path>& f
   std::set<fs::path> datasets;
   for (const auto& [name, scan] : records.scans.by_name()) {
     if (!is_in_any(scan, named) || !is_file_name(name)) continue;
-    const bool gone = !in_use.contains(name) && is_gone(scan);
+    const bool gone = !in_use.contains(name) && has_gone(scan, found.unknown);
     losses.add(scan, gone);
     if (!gone) continue;
     Leftover leftover = dataset_leftover(archive, name, scan);
     std::error_code ignored;
     datasets.insert(fs::weakly_canonical(dataset_path(archive, name), ignored));
-    if (!leftover.files.empty()) found.list.push_back(std::move(leftover));
+    (leftover.files.empty() ? found.recorded : found.list).push_back(std::move(leftover));
   }
   for (const auto& [name, scene] : records.scenes.by_name()) {
     const bool of_leftover = datasets.contains(scene);
     if (!(is_in_any(scene, named) || of_leftover) || !is_file_name(name)) continue;
-    const bool gone = of_leftover || is_gone(scene);
+    const bool gone = of_leftover || has_gone(scene, found.unknown);
     if (!of_leftover) losses.add(scene, gone);
     if (!gone) continue;
     Leftover leftover = recognised_leftover(archive, name, scene);
-    if (!leftover.files.empty()) found.list.push_back(std::move(leftover));
+    (leftover.files.empty() ? found.recorded : found.list).push_back(std::move(leftover));
   }
-  if (!found.list.empty()) found.emptied = losses.emptied();
+  found.emptied = losses.emptied();
+  if (!found.emptied.empty()) found.recorded.clear();
+  if (found.list.empty()) found.emptied.clear();  // nothing would be removed
   return found;
 }
 
-void remove_leftovers(const fs::path& archive, const std::vector<Leftover>& leftovers) {
-  if (leftovers.empty()) return;
+Removal remove_leftovers(const fs::path& archive, const Leftovers& leftovers) {
+  Removal removal;
+  if (leftovers.list.empty() && leftovers.recorded.empty()) return removal;
   refuse_links(archive);
   Records records = records_of(archive);
-  for (const Leftover& leftover : leftovers) {
-    for (const fs::path& file : leftover.files) {
-      std::error_code error;
-      fs::remove(file, error);
-      if (error)
-        throw io::Error(file, "", "cannot be removed: " + error.message(),
-                        "check the permissions of the archive");
-    }
+  for (const Leftover& leftover : leftovers.list)
+    (remove_files(leftover, removal.failures) ? removal.removed : removal.left).push_back(leftover);
+  const auto forget = [&](const Leftover& leftover) {
     const bool is_dataset = leftover.kind == Leftover::Kind::kDataset;
     (is_dataset ? records.scans : records.scenes).forget(leftover.name);
+  };
+  std::ranges::for_each(removal.removed, forget);
+  std::ranges::for_each(leftovers.recorded, forget);
+  try {
+    if (!records.scans.by_name().empty() || fs::exists(archive / "sources.json"))
+      records.scans.write(archive);
+    if (fs::exists(recognised_folder(archive))) records.scenes.write(recognised_folder(archive));
+  } catch (const io::Error& error) {
+    removal.failures.push_back(error);
   }
-  if (!records.scans.by_name().empty() || fs::exists(archive / "sources.json"))
-    records.scans.write(archive);
-  if (fs::exists(recognised_folder(archive))) records.scenes.write(recognised_folder(archive));
+  return removal;
 }
 
 }  // namespace semigeo::jobs

@@ -1,4 +1,4 @@
-"""Every call of the C library that can fail fails once in six small commands, from a run to an export: the program
+"""Every call of the C library that can fail fails once in small commands, from a run to a removal: the program
 says so or goes on, nothing broken stands under a final name, nothing is left over, and the same command again ends
 with the bytes of an undisturbed one. `python3 -B faults_test.py PROGRAM LIBRARY [unittest's arguments]`, where LIBRARY
 is built from counted_calls.cpp and its neighbours.
@@ -66,7 +66,7 @@ FUNCTIONS = {
     "watch": ("EMFILE", "ENFILE"),
 }
 # Advice that costs work, or results. It is wrong after an error that passes.
-COSTLY_ADVICE = re.compile(r"\b(remove|delete|rebuild|compute it again|copy the file again|is damaged|broken:)")
+COSTLY_ADVICE = re.compile(r"\b(remove\b|delete|rebuild|compute it again|copy the file again|is damaged|broken:)")
 DOCUMENTED_CODES = (0, 1, 2, 73, 75)
 
 
@@ -77,10 +77,13 @@ def contents(folder):
 
 
 class Scenario:
-    """A command, and the folder that it begins with."""
+    """A command, and the folder that it begins with: how another one has left it, or empty. `again` is whether it may
+    be given once more when it has ended with 0; `tells` is whether its output is always the same; `tidies` is whether
+    it removes what an earlier command could not remove."""
 
-    def __init__(self, name, folder, start, arguments):
-        self.name, self.folder, self.start, self.arguments = name, folder, start, arguments
+    def __init__(self, name, start, *arguments, again=True, tells=False, tidies=True):
+        self.name, self.start, self.arguments = name, start, arguments
+        self.again, self.tells, self.tidies = again, tells, tidies
 
     def command(self, scans):
         return [str(PROGRAM), *(str(a).replace("SCANS", str(scans)) for a in self.arguments)]
@@ -97,7 +100,7 @@ class Case:
         if scenario.start is None:
             self.place.mkdir()
         else:
-            shutil.copytree(scenario.start, self.place, symlinks=True)
+            shutil.copytree(scenario.start.place, self.place, symlinks=True)
         self.before = contents(self.place)
 
     def run(self, fault=None, counted=False):
@@ -147,26 +150,41 @@ class FaultsTest(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = Path(tempfile.mkdtemp(prefix="semigeo-faults-"))
         cls.addClassCleanup(shutil.rmtree, cls.folder)
-        cls.scans, cls.scenes = cls.folder / "scans", cls.folder / "scans" / "scenes"
+        cls.scans = cls.folder / "scans"
         for i in range(2):
-            write_ply(cls.scans / "models" / f"{i}.ply", boulder(3, i))
+            for folder in ("models", "more"):
+                write_ply(cls.scans / folder / f"{i}.ply", boulder(3, i))
         write_ply(cls.scans / "scenes" / "scene.ply", boulder(3, 1))
         run = ("run", "SCANS/models", "--output", "archive", "--levels", 1, "--threads", 1)
-        recognise = ("recognise", "SCANS/scenes/scene.ply", "--library", "archive/library.h5", "--output", "archive",
-                     "--threads", 1)
-        cls.scenarios, start = [], None
-        for name, arguments in (("run", run), ("library", (*run, "--library")), ("recognise", recognise),
-                                ("report", ("report", "archive", "--threads", 1)),
-                                ("check", ("check", "archive")),
-                                ("export", ("export", "archive", "--levels", "0", "--output", "exported"))):
-            scenario = Scenario(name, cls.folder / name, start, arguments)
+        search = ("SCANS/scenes/scene.ply", "--library", "archive/library.h5", "--output", "archive", "--threads", 1)
+        first, second = (f"archive/scans/{i}.ply.vtkhdf" for i in range(2))
+        cls.scenarios = {}
+
+        def add(name, start, *arguments, **properties):
+            scenario = Scenario(name, cls.scenarios.get(start), *arguments, **properties)
             case = Case(scenario, cls.scans, cls.folder / name)
             process = case.run()
             if process.returncode != 0:
                 raise AssertionError(process.stdout + process.stderr)
-            scenario.wanted = contents(case.place)
-            start = case.place
-            cls.scenarios.append(scenario)
+            scenario.wanted, scenario.place, scenario.output = contents(case.place), case.place, process.stdout
+            cls.scenarios[name] = scenario
+
+        add("run", None, *run)
+        add("library", "run", *run, "--library")
+        add("recognise", "library", "recognise", *search)
+        add("similar", "library", "similar", *search)
+        add("report", "recognise", "report", "archive", "--threads", 1)
+        add("check", "report", "check", "archive", tells=True)
+        add("info", "report", "info", "archive", tells=True)
+        add("status", "report", "status", "archive", tells=True)
+        add("picture", "run", "picture", first, "--output", "0.png", "--size", 64)
+        add("export", "run", "export", "archive", "--levels", "0", "--output", "exported")
+        add("build", "run", "library", "build", first, "--output", "mine.h5", "--threads", 1)
+        add("add", "build", "library", "add", "mine.h5", second, "--threads", 1)
+        add("remove", "add", "library", "remove", "mine.h5", "1.ply", "--threads", 1, again=False)
+        add("more", None, "run", "SCANS/more", "--output", "archive", "--levels", 1, "--threads", 1)
+        (cls.scans / "more" / "1.ply").unlink()
+        add("prune", "more", "prune", "archive", tidies=False)
 
     def problems(self, scenario, folder, fault):
         """What is wrong after this fault, as text; empty if all is well."""
@@ -182,12 +200,15 @@ class FaultsTest(unittest.TestCase):
         text = process.stdout + process.stderr
         if process.returncode not in DOCUMENTED_CODES:
             found.append(f"ended with {process.returncode}")
-        if failed and process.returncode != 0 and not re.search(r"archive|scans|scene|memory|output|semigeo:", text):
+        if failed and process.returncode != 0 and not re.search(r"archive|mine|scans|scene|memory|output|semigeo:", text):
             found.append("says nothing")
         if failed and COSTLY_ADVICE.search(text):
             found.append("gives costly advice")
+        if process.returncode == 0 and scenario.tells and process.stdout != scenario.output:
+            found.append("ended with 0, but says something else")
         found += self.problems_of_files(case, function, process.returncode, text)
-        found += self.problems_of_next(case)
+        if process.returncode != 0 or scenario.again:
+            found += self.problems_of_next(case)
         if not found:
             return ""
         return f"{'; '.join(found)}\n  failed call: {failed or 'none'}\n  code {process.returncode}: {text.strip()}"
@@ -199,9 +220,9 @@ class FaultsTest(unittest.TestCase):
         if function == "unlink" or unremoved.endswith(("archive/lock", "library/partitions")):
             now = {path: data for path, data in now.items() if path in wanted or
                    not (path.startswith(unremoved) or path.endswith(unremoved))}
-        # What a library is made of stays until it is made.
-        left = [path for path in now if path not in wanted and
-                (path.endswith(".partial") or not path.startswith("archive/library/"))]
+        # What a library is made of stays until it is made; what was to be removed may be there.
+        left = [path for path in now if path not in wanted and now[path] != case.before.get(path) and
+                (path.endswith(".partial") or not path.startswith(("archive/library/", "mine.h5.parts/")))]
         # A folder that could not be listed when it was to be removed stays.
         left += [str(path) for path in case.temporary.rglob("*") if str(case.temporary) not in case.failed_call()]
         # Without memory the program ends at once, and leaves that to the next run.
@@ -234,13 +255,15 @@ class FaultsTest(unittest.TestCase):
         if process.returncode != 0:
             return [f"the next run ends with {process.returncode}: {process.stdout}{process.stderr}"]
         now, wanted = contents(case.place), case.scenario.wanted
+        if not case.scenario.tidies:
+            now = {path: data for path, data in now.items() if not path.endswith(".partial")}
         differ = sorted(path for path in now.keys() | wanted.keys() if now.get(path) != wanted.get(path))
         return [f"after the next run these differ: {differ}"] if differ else []
 
     def examine(self, name):
         if ONLY[0] not in ("", name):
             self.skipTest("not asked for")
-        scenario = next(s for s in self.scenarios if s.name == name)
+        scenario = self.scenarios[name]
         with tempfile.TemporaryDirectory(prefix="semigeo-faults-") as folder:
             case = Case(scenario, self.scans, Path(folder) / "case")
             process = case.run(counted=True)
@@ -267,14 +290,38 @@ class FaultsTest(unittest.TestCase):
     def test_recognise(self):
         self.examine("recognise")
 
+    def test_similar(self):
+        self.examine("similar")
+
     def test_report(self):
         self.examine("report")
 
     def test_check(self):
         self.examine("check")
 
+    def test_info(self):
+        self.examine("info")
+
+    def test_status(self):
+        self.examine("status")
+
+    def test_picture(self):
+        self.examine("picture")
+
     def test_export(self):
         self.examine("export")
+
+    def test_build(self):
+        self.examine("build")
+
+    def test_add(self):
+        self.examine("add")
+
+    def test_remove(self):
+        self.examine("remove")
+
+    def test_prune(self):
+        self.examine("prune")
 
 
 if __name__ == "__main__":

@@ -198,6 +198,14 @@ TEST_F(ContainerTest, DamageIsNamed) {
   EXPECT_EQ(list_container(zip).error, "");
 }
 
+TEST_F(ContainerTest, DamageBehindAMemberWithoutNameHasItsNumber) {
+  const fs::path file = write_container(
+      folder_ / "a.tar", "pax",
+      {{.name = "a.ply", .bytes = "1"}, {.name = "..", .bytes = std::string(100'000, 'x')}});
+  fs::resize_file(file, 50'000);
+  expect_parts(list_container(file).error, {"a.tar: behind member number 2: "});
+}
+
 TEST_F(ContainerTest, OtherFilesAreRefused) {
   const auto error = [&](const char* name, std::string_view bytes) {
     return list_container(write_file(folder_ / name, bytes)).error;

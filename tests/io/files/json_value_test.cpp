@@ -27,6 +27,15 @@ TEST(JsonValue, OtherNumbersAreNoWholeNumbers) {
     EXPECT_THROW(value_in<std::uint64_t>(text), nlohmann::json::exception) << text;
 }
 
+TEST(JsonValue, NumbersBeyondTheirTypeAreRefused) {
+  EXPECT_EQ(value_in<int>("2147483647"), INT32_MAX);
+  EXPECT_THROW(value_in<int>("2147483648"), nlohmann::json::exception);
+  EXPECT_THROW(value_in<int>("4294967296"), nlohmann::json::exception);
+  EXPECT_THROW(value_in<int>("-2147483649"), nlohmann::json::exception);
+  EXPECT_THROW(value_in<std::int64_t>("9223372036854775808"), nlohmann::json::exception);
+  EXPECT_THROW(value_in<std::uint64_t>("-1"), nlohmann::json::exception);
+}
+
 TEST(JsonValue, OtherValuesArriveAsTheyAre) {
   EXPECT_EQ(value_in<double>("1e300"), 1e300);
   EXPECT_EQ(value_in<double>("2"), 2);

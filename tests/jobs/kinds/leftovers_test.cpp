@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "io/files/error.hpp"
+#include "io/files/small_file.hpp"
 #include "jobs/archive/sources.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -82,7 +83,7 @@ TEST_F(LeftoversTest, AScanThatIsGoneLeavesAllItsFiles) {
   EXPECT_EQ(found.list[0].files[0], archive_ / "scans/b.ply.vtkhdf");
   EXPECT_EQ(found.list[0].bytes, 5u);
   const std::set<std::string> before = files();
-  remove_leftovers(archive_, found.list);
+  remove_leftovers(archive_, found);
   std::set<std::string> after = files();
   EXPECT_EQ(after.size() + 5, before.size());
   for (const std::string& path : after) EXPECT_EQ(path.find("b.ply"), std::string::npos) << path;
@@ -124,7 +125,7 @@ TEST_F(LeftoversTest, WhatSourcesDoNotNameIsNobodysLeftover) {
   file("archive/scans/foreign.vtkhdf");
   file("archive/scans/b.ply.vtkhdf.bak");
   fs::remove(folder_ / "in/b.ply");
-  remove_leftovers(archive_, find({"in"}).list);
+  remove_leftovers(archive_, find({"in"}));
   EXPECT_TRUE(files().contains("scans/foreign.vtkhdf"));
   EXPECT_TRUE(files().contains("scans/b.ply.vtkhdf.bak"));
 }
@@ -175,10 +176,13 @@ TEST_F(LeftoversTest, AScanThatCannotBeSeenIsNotGone) {
   fs::permissions(folder_.path(), fs::perms(0755));
   const bool root = geteuid() == 0;
   if (root) ASSERT_EQ(seteuid(65534), 0);
-  const Names found = names({"in"});
+  const Leftovers found = find({"in"});
   if (root) ASSERT_EQ(seteuid(0), 0);
   fs::permissions(folder_ / "in/day", fs::perms::owner_all);
-  EXPECT_EQ(found, Names{});
+  EXPECT_TRUE(found.list.empty());
+  ASSERT_EQ(found.unknown.size(), 1u);
+  EXPECT_EQ(found.unknown[0].file(), folder_ / "in/day/c.ply");
+  EXPECT_EQ(found.unknown[0].code(), EACCES);
 }
 
 TEST_F(LeftoversTest, RecognisedFilesGoWithTheirScenes) {
@@ -189,7 +193,7 @@ TEST_F(LeftoversTest, RecognisedFilesGoWithTheirScenes) {
   for (const char* scan : {"in/scene.ply", "in/b.ply", "else/other.ply"})
     fs::remove(folder_ / scan);
   EXPECT_EQ(names({"in"}), (Names{"b.ply", "b.ply.vtkhdf", "scene.ply"}));
-  remove_leftovers(archive_, find({"in"}).list);
+  remove_leftovers(archive_, find({"in"}));
   EXPECT_FALSE(files().contains("recognised/scene.ply.json"));
   EXPECT_FALSE(files().contains("recognised/b.ply.vtkhdf.json"));
   EXPECT_TRUE(files().contains("recognised/a.ply.json"));
@@ -206,7 +210,7 @@ TEST_F(LeftoversTest, TheRecordedFoldersAreTheHighestOnes) {
 
 TEST_F(LeftoversTest, NothingIsRemovedBehindALink) {
   fs::remove(folder_ / "in/b.ply");
-  const std::vector<Leftover> found = find({"in"}).list;
+  const Leftovers found = find({"in"});
   for (const char* folder : {"scans", "logs", "library/triplets"}) {
     const fs::path elsewhere = folder_ / "elsewhere";
     fs::rename(archive_ / folder, elsewhere);
@@ -218,12 +222,41 @@ TEST_F(LeftoversTest, NothingIsRemovedBehindALink) {
   EXPECT_TRUE(files().contains("scans/b.ply.vtkhdf"));
 }
 
-TEST_F(LeftoversTest, WhatCannotBeRemovedIsAnError) {
+TEST_F(LeftoversTest, WhatCannotBeRemovedStaysAndHarmsNoOther) {
   fs::remove(folder_ / "in/b.ply");
-  const std::vector<Leftover> found = find({"in"}).list;
+  fs::remove(folder_ / "in/day/c.ply");
+  const Leftovers found = find({"in"});
   fs::remove(archive_ / "scans/b.ply.xdmf");
   file("archive/scans/b.ply.xdmf/inside");
-  EXPECT_THROW(remove_leftovers(archive_, found), io::Error);
+  const Removal removal = remove_leftovers(archive_, found);
+  ASSERT_EQ(removal.removed.size(), 1u);
+  EXPECT_EQ(removal.removed[0].name, "c.ply");
+  ASSERT_EQ(removal.left.size(), 1u);
+  EXPECT_EQ(removal.left[0].name, "b.ply");
+  ASSERT_EQ(removal.failures.size(), 1u);
+  EXPECT_EQ(removal.failures[0].file(), archive_ / "scans/b.ply.xdmf");
+  EXPECT_TRUE(Sources::read(archive_).by_name().contains("b.ply"));
+  EXPECT_FALSE(Sources::read(archive_).by_name().contains("c.ply"));
+}
+
+TEST_F(LeftoversTest, AScanOfWhichOnlyTheRecordIsThereIsForgotten) {
+  fs::remove(folder_ / "in/b.ply");
+  const std::string record = io::read_text(archive_ / "sources.json", {});
+  remove_leftovers(archive_, find({"in"}));
+  const std::string after = io::read_text(archive_ / "sources.json", {});
+  std::ofstream(archive_ / "sources.json") << record;  // as if it could not be written
+  EXPECT_EQ(names({"in"}), Names{});
+  EXPECT_TRUE(remove_leftovers(archive_, find({"in"})).removed.empty());
+  EXPECT_EQ(io::read_text(archive_ / "sources.json", {}), after);
+}
+
+TEST_F(LeftoversTest, RecordsOfAFolderThatMayBeMissingStay) {
+  fs::remove(folder_ / "else/d.ply");
+  fs::remove(archive_ / "scans/d.ply.vtkhdf");
+  const std::vector<Leftover> found = find({"else"}).list;
+  for (const fs::path& path : found[0].files) fs::remove(path);
+  EXPECT_TRUE(find({"else"}).recorded.empty());
+  EXPECT_TRUE(find({"else"}).emptied.empty());
 }
 
 }  // namespace
