@@ -3,6 +3,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -52,6 +53,20 @@ void on_crash(int number) {
   raise(number);
 }
 
+/// HDF5 1.10 ends the process with -1 when an identifier gets no memory. Nothing else uses this
+/// code.
+void on_exit_of_library(int status, void*) {
+  if (status == -1) end_now();
+}
+
+/// Lets handlers of this thread run when its stack is used up: without memory, HDF5 reports that it
+/// cannot report an error, and so on.
+void keep_stack_for_handlers() {
+  alignas(16) static std::array<char, 1 << 16> stack;
+  const stack_t kept = {.ss_sp = stack.data(), .ss_flags = 0, .ss_size = stack.size()};
+  sigaltstack(&kept, nullptr);
+}
+
 }  // namespace
 
 void end_for_lack_of_memory(const char* sentence, int exit_code) {
@@ -59,9 +74,12 @@ void end_for_lack_of_memory(const char* sentence, int exit_code) {
   final_code = exit_code;
   const std::terminate_handler before = std::set_terminate(on_terminate);
   if (before != on_terminate) usual_end = before;
+  [[maybe_unused]] static const int registered = ::on_exit(on_exit_of_library, nullptr);
   if constexpr (kSanitized) return;
+  keep_stack_for_handlers();
   struct sigaction action = {};
   action.sa_handler = on_crash;
+  action.sa_flags = SA_ONSTACK;
   sigemptyset(&action.sa_mask);
   for (const int number : {SIGSEGV, SIGBUS, SIGABRT}) sigaction(number, &action, nullptr);
 }

@@ -82,9 +82,11 @@ herr_t collect_link(hid_t, const char* name, const H5L_info_t* info, void* data)
 }  // namespace
 
 // HDF5's exit handler is turned off. It would flush what a full disk has left unwritten, and crash.
+// H5open does not report each allocation that has failed.
 static bool has_started() {
+  errno = 0;
   H5dont_atexit();  // fails if the library runs already, as in programs that also use it directly
-  return H5open() >= 0;
+  return H5open() >= 0 && errno != ENOMEM;
 }
 
 // HDF5 starts once for each process. If it gets no memory then, it stays half started, and later

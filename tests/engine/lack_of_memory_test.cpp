@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <initializer_list>
 #include <new>
 #include <stdexcept>
@@ -52,6 +53,29 @@ TEST(LackOfMemory, ACrashAfterAFailedAllocationIsOne) {
               }).exit_code,
               kNoMemoryCode);
   }
+}
+
+/// Uses up the stack, a page in each call.
+int dig(int depth) {
+  volatile char page[4096] = {};
+  page[depth % 4096] = 1;
+  return depth < 0 ? 0 : dig(depth + 1) + page[0];
+}
+
+TEST(LackOfMemory, AStackThatIsUsedUpAfterAFailedAllocationIsOne) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers have handlers of their own";
+#endif
+  EXPECT_EQ(end_of([] {
+              errno = ENOMEM;
+              return dig(0);
+            }).exit_code,
+            kNoMemoryCode);
+}
+
+TEST(LackOfMemory, ALibraryThatEndsTheProcessHasNone) {
+  EXPECT_EQ(end_of([] { std::exit(-1); }).exit_code, kNoMemoryCode);
+  EXPECT_EQ(end_of([] { std::exit(3); }).exit_code, 3);
 }
 
 TEST(LackOfMemory, AnyOtherCrashStaysACrash) {
