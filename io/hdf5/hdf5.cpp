@@ -1,6 +1,7 @@
 #include "io/hdf5/hdf5.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <charconv>
 #include <new>
@@ -103,6 +104,10 @@ void start_hdf5() {
   prepare_library();
 }
 
+// Whether HDF5 got no memory once in this process. It may be broken since then, so that what it
+// says of a file is no proof of damage.
+static std::atomic<bool> has_lacked_memory = false;
+
 // Returns the errno of the last call of the system that has failed in this thread since the last
 // file was opened, and forgets it. It is 0 if that error does not keep files from being read. HDF5
 // mostly does not tell it: it reports what it could not find or do then.
@@ -118,7 +123,7 @@ static int refusal_of_system() {
     case ETIMEDOUT:
       return code;
     default:
-      return 0;
+      return has_lacked_memory ? ENOMEM : 0;
   }
 }
 
@@ -130,6 +135,7 @@ static InnermostReason reason_and_code() {
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_innermost, &reason);
   if (!reason.text) throw std::bad_alloc();  // no exception may pass through a C library
   std::string text = std::move(*reason.text);
+  if (reason.lacks_memory) has_lacked_memory = true;
   int code = reason.lacks_memory ? ENOMEM : refusal;
   constexpr std::string_view kNumber = "errno = ";
   if (const std::size_t number = text.find(kNumber); number != std::string::npos)
