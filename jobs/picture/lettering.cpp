@@ -17,16 +17,28 @@ extern const unsigned char semigeo_font_end[];
 }
 
 namespace semigeo::jobs {
-namespace {}  // namespace
+namespace {
+
+/// Returns whether a call of FreeType has worked. Throws std::bad_alloc if there was no memory for
+/// it.
+bool worked(FT_Error error) {
+  if (FT_ERROR_BASE(error) == FT_Err_Out_Of_Memory) throw std::bad_alloc();
+  return error == 0;
+}
+
+}  // namespace
 
 struct Lettering::Font {
   explicit Font(int size) {
     if (FT_Init_FreeType(&library) != 0) throw std::bad_alloc();
-    if (FT_New_Memory_Face(library, semigeo_font_begin, semigeo_font_end - semigeo_font_begin, 0,
-                           &face) != 0 ||
-        FT_Set_Pixel_Sizes(face, 0, static_cast<FT_UInt>(size)) != 0) {
+    try {
+      if (!worked(FT_New_Memory_Face(library, semigeo_font_begin,
+                                     semigeo_font_end - semigeo_font_begin, 0, &face)) ||
+          !worked(FT_Set_Pixel_Sizes(face, 0, static_cast<FT_UInt>(size))))
+        throw std::runtime_error("the font of this program cannot be read");
+    } catch (...) {
       FT_Done_FreeType(library);
-      throw std::runtime_error("the font of this program cannot be read");
+      throw;
     }
   }
   ~Font() { FT_Done_FreeType(library); }
@@ -35,8 +47,8 @@ struct Lettering::Font {
 
   /// Loads a character with its bitmap, or returns null.
   FT_GlyphSlot load(FT_ULong code) const {
-    return FT_Load_Char(face, code, FT_LOAD_RENDER | FT_LOAD_TARGET_LIGHT) == 0 ? face->glyph
-                                                                                : nullptr;
+    return worked(FT_Load_Char(face, code, FT_LOAD_RENDER | FT_LOAD_TARGET_LIGHT)) ? face->glyph
+                                                                                   : nullptr;
   }
 
   FT_Library library = nullptr;

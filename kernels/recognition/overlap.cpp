@@ -55,6 +55,21 @@ class NearestWithin {
   std::int64_t index_ = -1;
 };
 
+/// Collects the nearest sample within a limit that faces the same way.
+class NearestFacing : public NearestWithin {
+ public:
+  NearestFacing(float squared_limit, const std::vector<Vector3f>& normals, const Vector3f& normal)
+      : NearestWithin(squared_limit), normals_(normals), normal_(normal) {}
+  // NOLINTNEXTLINE(readability-identifier-naming): nanoflann asks for this name
+  bool addPoint(float squared, std::size_t index) {
+    return !(normals_[index].dot(normal_) > 0) || NearestWithin::addPoint(squared, index);
+  }
+
+ private:
+  const std::vector<Vector3f>& normals_;
+  const Vector3f& normal_;
+};
+
 /// Collects all points within a limit.
 class AllWithin {
  public:
@@ -140,16 +155,28 @@ class PosedModel {
     c.posed = {pose_.point(model_.points[i]), pose_.rotation * model_.normals[i]};
     c.near = tree_.nearest(c.posed.point, limit + scene.spacing);
     if (c.near < 0) return c;
+    compare(c);
+    if (c.cosine < 0) {
+      Contact facing = c;
+      facing.near = tree_.nearest_facing(c.posed.point, c.posed.normal, tolerance_ + scene.spacing);
+      if (facing.near >= 0) compare(facing);
+      if (facing.matches) return facing;
+    }
+    return c;
+  }
+
+ private:
+  /// Says how the sample lies to the scene's sample near it.
+  void compare(Contact& c) const {
+    const SurfaceSamples& scene = tree_.samples();
     const Vector3f& q = scene.points[c.near];
     const Vector3f& normal = scene.normals[c.near];
     c.cosine = normal.dot(c.posed.normal);
     c.height = (c.posed.point - q).dot(normal);
     c.matches =
         on_surface(c.posed.point, q, normal, tolerance_, scene.spacing) && c.cosine > min_cosine_;
-    return c;
   }
 
- private:
   const SurfaceSamples& model_;
   const FastPose pose_;
   const SampleTree& tree_;
@@ -265,6 +292,14 @@ std::int64_t SampleTree::nearest(const Vector3f& p, float limit, std::int64_t gu
   return result.index();
 }
 
+std::int64_t SampleTree::nearest_facing(const Vector3f& p, const Vector3f& normal,
+                                        float limit) const {
+  if (samples_->points.empty()) return -1;
+  NearestFacing result(limit * limit, samples_->normals, normal);
+  tree_->index.findNeighbors(result, p.data(), nanoflann::SearchParams());
+  return result.index();
+}
+
 void SampleTree::within(const Vector3f& p, float limit, std::vector<std::uint32_t>& found) const {
   found.clear();
   if (samples_->points.empty()) return;
@@ -358,11 +393,12 @@ std::vector<std::uint8_t> samples_on_model(const SampleTree& model, double diago
   for (std::size_t i = 0; i < result.size(); ++i) {
     if (!used.empty() && used[i] != 0) continue;
     const Vector3f p = back.point(scene.points[i]);
-    const std::int64_t near = model.nearest(p, tolerance + spacing);
+    const Vector3f facing = back.rotation * scene.normals[i];
+    const std::int64_t near = model.nearest_facing(p, facing, tolerance + spacing);
     if (near < 0) continue;
     const Vector3f& normal = model.samples().normals[near];
     result[i] = on_surface(p, model.samples().points[near], normal, tolerance, spacing) &&
-                        normal.dot(back.rotation * scene.normals[i]) > options.min_cosine
+                        normal.dot(facing) > options.min_cosine
                     ? 1
                     : 0;
   }

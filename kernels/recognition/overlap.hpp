@@ -28,6 +28,12 @@ class SampleTree {
   /// makes the search shorter.
   std::int64_t nearest(const Eigen::Vector3f& p, float limit, std::int64_t guess = -1) const;
 
+  /// Returns the index of the nearest sample whose normal is less than 90 degrees from this one, or
+  /// -1 if none is nearer than `limit`. Thin parts have samples of their other side as near as
+  /// their own.
+  std::int64_t nearest_facing(const Eigen::Vector3f& p, const Eigen::Vector3f& normal,
+                              float limit) const;
+
   /// Fills `found` with the indices of the samples that are nearer to a point than `limit`,
   /// ascending.
   void within(const Eigen::Vector3f& p, float limit, std::vector<std::uint32_t>& found) const;

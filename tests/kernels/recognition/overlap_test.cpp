@@ -236,6 +236,36 @@ TEST(Overlap, WhatIsUsedIsNeutral) {
   for (std::size_t i = 0; i < used.size(); ++i) EXPECT_NE(marks[i], used[i]);
 }
 
+/// Returns samples of both sides of a square plate that is much thinner than their spacing.
+SurfaceSamples plate(int count, std::mt19937_64& random) {
+  std::uniform_real_distribution<float> along(0, 1);
+  SurfaceSamples samples;
+  samples.spacing = std::sqrt(2.0F / static_cast<float>(count));
+  for (int i = 0; i < count; ++i) {
+    const float side = i % 2 == 0 ? 1 : -1;
+    samples.points.emplace_back(along(random), along(random), 0.002F * side);
+    samples.normals.emplace_back(0, 0, side);
+  }
+  return samples;
+}
+
+TEST(Overlap, ThinPartsMatchOnBothSides) {
+  std::mt19937_64 random(7);
+  const SurfaceSamples model = plate(2000, random);
+  const SurfaceSamples scene = plate(2000, random);
+  const SampleTree tree(scene);
+  const Overlap both = overlap(model, std::sqrt(2), {}, tree, {}, 2000);
+  EXPECT_GT(both.match, 0.98);
+  EXPECT_LT(both.conflict, 0.005);
+  const auto marks = samples_on_model(SampleTree(model), std::sqrt(2), {}, scene, {}, 2000);
+  EXPECT_GT(std::ranges::count(marks, 1), 1960);
+  // The whole plate turned inside out contradicts it.
+  SurfaceSamples inverted = model;
+  for (Vector3f& normal : inverted.normals) normal = -normal;
+  for (Vector3f& point : inverted.points) point.z() *= 10;
+  EXPECT_LT(overlap(inverted, std::sqrt(2), {}, tree, {}, 2000).match, 0.02);
+}
+
 TEST(Overlap, RefinementFindsTheTruePose) {
   std::mt19937_64 random(3);
   const Body body;
