@@ -156,9 +156,10 @@ class PosedModel {
     c.near = tree_.nearest(c.posed.point, limit + scene.spacing);
     if (c.near < 0) return c;
     compare(c);
-    if (c.cosine < 0) {
+    const float reach = tolerance_ + scene.spacing;
+    if (c.cosine < 0 && (c.posed.point - scene.points[c.near]).squaredNorm() < reach * reach) {
       Contact facing = c;
-      facing.near = tree_.nearest_facing(c.posed.point, c.posed.normal, tolerance_ + scene.spacing);
+      facing.near = tree_.nearest_facing(c.posed.point, c.posed.normal, reach);
       if (facing.near >= 0) compare(facing);
       if (facing.matches) return facing;
     }
