@@ -11,6 +11,7 @@
 #include <string>
 
 #include "engine/fork_child.hpp"
+#include "tests/support/sanitizers.hpp"
 
 namespace semigeo::engine {
 namespace {
@@ -43,9 +44,7 @@ TEST(LackOfMemory, WhatMustNotThrowEndsTheProcessWithItsCode) {
 }
 
 TEST(LackOfMemory, ACrashAfterAFailedAllocationIsOne) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "sanitizers have handlers of their own";
-#endif
+  if (tests::kSanitized) GTEST_SKIP() << "sanitizers have handlers of their own";
   for (const int number : {SIGSEGV, SIGBUS, SIGABRT}) {
     EXPECT_EQ(end_of([number] {
                 errno = ENOMEM;
@@ -63,9 +62,7 @@ int dig(int depth) {
 }
 
 TEST(LackOfMemory, AStackThatIsUsedUpAfterAFailedAllocationIsOne) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "sanitizers have handlers of their own";
-#endif
+  if (tests::kSanitized) GTEST_SKIP() << "sanitizers have handlers of their own";
   EXPECT_EQ(end_of([] {
               errno = ENOMEM;
               return dig(0);
@@ -79,9 +76,7 @@ TEST(LackOfMemory, ALibraryThatEndsTheProcessHasNone) {
 }
 
 TEST(LackOfMemory, AnyOtherCrashStaysACrash) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "sanitizers have handlers of their own";
-#endif
+  if (tests::kSanitized) GTEST_SKIP() << "sanitizers have handlers of their own";
   errno = ENOMEM;  // what failed here is not known to a child
   EXPECT_EQ(end_of(crash).signal, SIGSEGV);
   errno = 0;
