@@ -1,6 +1,7 @@
 #include "jobs/stages/match_triplets.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -13,6 +14,8 @@ using kernels::Triplet;
 
 /// The number of postings that stay in the first-level cache while all lookups of a cell pass.
 constexpr std::int64_t kTile = 512;
+/// The number of groups of blocks whose matches are gathered side by side.
+constexpr std::size_t kGroups = 32;
 
 /// Returns the number of the triangle of each triplet. Triplets that differ only in the order of
 /// their corners have the same number.
@@ -84,7 +87,7 @@ class Matcher {
                                  for (auto i = range.begin; i < range.end; ++i)
                                    compare_block(blocks_[i], found[i]);
                                });
-    return gathered(found);
+    return gathered(found, context);
   }
 
  private:
@@ -196,29 +199,55 @@ class Matcher {
                        .model_corners = postings[i].corners});
   }
 
-  TripletMatches gathered(const std::vector<std::vector<TripletMatch>>& found) const {
+  /// Sorts the matches of all blocks by model. Matches of one model keep the order of the blocks.
+  TripletMatches gathered(const std::vector<std::vector<TripletMatch>>& found,
+                          const engine::RunContext& context) const {
     TripletMatches result;
     result.scene_triplets = static_cast<std::int64_t>(scene_.size());
     result.compared = comparisons();
     const std::size_t models = library_.models().size();
-    result.first.assign(models + 1, 0);
+    const std::size_t groups = std::min(kGroups, found.size());
+    const auto for_each = [&](std::size_t count, const auto& body) {
+      context.workers.for_blocks(static_cast<std::int64_t>(count), 1,
+                                 [&](engine::IndexRange range) {
+                                   for (auto i = range.begin; i < range.end; ++i)
+                                     body(static_cast<std::size_t>(i));
+                                 });
+    };
+    const auto for_each_match = [&](std::size_t group, const auto& body) {
+      const std::size_t end = (group + 1) * found.size() / groups;
+      for (std::size_t block = group * found.size() / groups; block < end; ++block)
+        for (const TripletMatch& match : found[block]) body(match);
+    };
+    // Where the next match of each model in each group belongs; at first how many there are.
+    std::vector<std::vector<std::int64_t>> next(groups, std::vector<std::int64_t>(models));
     std::vector<std::uint32_t> of_triangle(scene_.size());  // there are at most as many triangles
-    for (const auto& block : found)
-      for (const TripletMatch& match : block) {
-        ++result.first[match.model + 1];
-        ++of_triangle[match.triangle];
-      }
-    std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
-    result.matches.resize(result.first.back());
-    result.votes.assign(models, 0);
-    std::vector<std::int64_t> next(result.first.begin(), result.first.end() - 1);
-    for (const auto& block : found)
-      for (const TripletMatch& match : block) {
-        TripletMatch& placed = result.matches[next[match.model]++];
+    for_each(groups, [&](std::size_t group) {
+      for_each_match(group, [&](const TripletMatch& match) {
+        ++next[group][match.model];
+        std::atomic_ref(of_triangle[match.triangle]).fetch_add(1, std::memory_order_relaxed);
+      });
+    });
+    std::int64_t first = 0;
+    for (std::size_t model = 0; model < models; ++model) {
+      result.first.push_back(first);
+      for (std::vector<std::int64_t>& of_group : next)
+        first += std::exchange(of_group[model], first);
+    }
+    result.first.push_back(first);
+    result.matches.resize(first);
+    for_each(groups, [&](std::size_t group) {
+      for_each_match(group, [&](const TripletMatch& match) {
+        TripletMatch& placed = result.matches[next[group][match.model]++];
         placed = match;
         placed.weight = 1.0F / static_cast<float>(of_triangle[match.triangle]);
-        result.votes[match.model] += placed.weight;
-      }
+      });
+    });
+    result.votes.assign(models, 0);
+    for_each(models, [&](std::size_t model) {
+      for (auto i = result.first[model]; i < result.first[model + 1]; ++i)
+        result.votes[model] += result.matches[i].weight;
+    });
     return result;
   }
 
