@@ -25,7 +25,8 @@ void keep(std::vector<ExaminedPose>& poses, std::size_t by_overlap, std::size_t 
 /// Returns the part of a score that says how well a pose fits where it matches.
 double quality(const ExaminedPose& pose, double conflict, const ScoreWeights& weights) {
   const kernels::Overlap& o = pose.overlap;
-  const double held = o.stability / (o.stability + weights.half_held);
+  const double hold = o.stability + weights.hold_of_support * pose.support;
+  const double held = hold / (hold + weights.half_held);
   return std::pow(held, weights.held) *
          std::pow(o.match / (o.match + conflict), weights.unopposed) *
          std::pow(o.closeness, weights.closeness);
@@ -50,10 +51,11 @@ double view_score_of(const ExaminedPose& pose, const ViewTuning& view) {
   const double match = pose.overlap.match;
   const kernels::View& seen = pose.overlap.view;
   const double visible = seen.visible();
-  if (match <= 0 || visible <= 0) return 0;
+  if (match <= 0 || seen.there <= 0) return 0;
   const double enough = std::min(match / view.enough_match, 1.0);
   const double explained = std::min(pose.explained / view.enough_explained, 1.0);
   return std::min(match / visible, 1.0) * seen.there / visible * std::sqrt(enough) *
+         std::pow(seen.there / (seen.there + seen.behind), view.hides_nothing) *
          quality(pose, seen.opposed, view.score) *
          std::pow(match / (match + pose.overlap.conflict), view.uncontradicted) *
          std::pow(explained * wanted(pose, view.score), view.score.explained);

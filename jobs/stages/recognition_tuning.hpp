@@ -170,8 +170,9 @@ struct ThirdLookTuning {
 
 /// The weights of the score, measured on thousands of right and wrong poses. The score is
 ///   sqrt(match either) held^h unopposed^u closeness^c (explained wanted)^e
-/// where either = 1 - (1 - match) (1 - explained), held = stability / (stability + half),
-/// unopposed = match / (match + conflict), and wanted = (prior + support) / (2 prior + support).
+/// where either = 1 - (1 - match) (1 - explained), held = hold / (hold + half) with
+/// hold = stability + s support, unopposed = match / (match + conflict), and
+/// wanted = (prior + support) / (2 prior + support).
 struct ScoreWeights {
   /// The exponent of closeness. A right pose most of all lies close to the surface.
   double closeness = 8;
@@ -179,8 +180,10 @@ struct ScoreWeights {
   double unopposed = 1.5;
   /// The exponent of `held`. A right pose is held fast by what matches.
   double held = 0.75;
-  /// The stability of which `held` is one half.
+  /// The hold of which `held` is one half.
   double half_held = 0.03;
+  /// What a triplet adds to the hold: features hold a model where its surface can slip.
+  double hold_of_support = 4e-4;
   /// The exponent of `explained` and `wanted`. The share of the scene that is explained says less,
   /// as a model may be a small part of the scene, or the scene a small part of the model.
   double explained = 0.25;
@@ -192,14 +195,18 @@ struct ScoreWeights {
 /// The score in a scene that was seen from one place is
 ///   match / visible there / visible sqrt(min(match / enough, 1)) held^h unopposed^u closeness^c
 ///   (min(explained / enough, 1) wanted)^e (match / (match + conflict))^a
+///   (there / (there + behind))^b
 /// where visible is the share of the model that should have been seen, and unopposed counts only
 /// what was seen. It is multiplied by `weight`, so that one least score holds for both, and the
 /// larger one of both scores counts.
 struct ViewTuning {
   double enough_match = 0.2;      ///< A pose that matches less of the model has a lower score.
   double enough_explained = 0.1;  ///< A pose that explains less of the scene has a lower score.
+  /// The exponent b. A right pose hides nothing that was seen behind it. That nothing was seen
+  /// where a model lies says less: scanners miss what is dark or shiny.
+  double hides_nothing = 3;
   /// The exponents h, u, c and e. What is seen of a right pose is seen nearly without a fault.
-  ScoreWeights score = {.closeness = 12,
+  ScoreWeights score = {.closeness = 11,
                         .unopposed = 3,
                         .held = 0.75,
                         .half_held = 0.015,
@@ -207,7 +214,7 @@ struct ViewTuning {
                         .prior_support = 4};
   /// The exponent a. Surfaces that were not seen hardly ever contradict a right pose; those of a
   /// box that lies on a flat part of something else do.
-  double uncontradicted = 3;
+  double uncontradicted = 6;
   double weight = 0.6;  ///< Scores are multiplied by this.
 };
 

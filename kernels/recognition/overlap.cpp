@@ -191,14 +191,16 @@ class ViewCount {
   ViewCount(const OverlapOptions& options, float spacing, float tolerance)
       : depths_(options.depths), tolerance_(kLooser * tolerance + spacing / 2) {}
 
-  void add(const Contact& c) {
+  /// `at_rim` tells whether the sample lies nearest to the rim of what was seen. Nobody knows how
+  /// the surface goes on there, and whether the sample belongs to another face of an edge.
+  void add(const Contact& c, bool at_rim) {
     const Vector3f& p = c.posed.point;
     const Vector3f to_eye = depths_->eye() - p;
     if (c.posed.normal.dot(to_eye) < kLeastFacing * to_eye.norm()) return;
     switch (depths_->look(p, tolerance_)) {
       case Sight::kThere:
         ++there_;
-        if (c.near >= 0 && !c.matches) ++opposed_;
+        if (c.near >= 0 && !c.matches && !at_rim) ++opposed_;
         break;
       case Sight::kBehind:
         ++behind_;
@@ -329,13 +331,14 @@ Overlap overlap(const SurfaceSamples& model, double diagonal, const Similarity& 
   std::vector<OrientedPoint> matched;
   for (std::size_t i = 0; i < n; ++i) {
     const Contact c = posed.contact(i, limit);
-    if (options.depths != nullptr) view.add(c);
+    const bool at_rim = c.near >= 0 && !rim.empty() && rim[c.near] != 0;
+    if (options.depths != nullptr) view.add(c, at_rim);
     if (c.near < 0 || (!used.empty() && used[c.near] != 0)) continue;
     if (c.matches) {
       ++matches;
       closeness += 1 - (c.height / posed.tolerance()) * (c.height / posed.tolerance());
       if (options.stability) matched.push_back(c.posed);
-    } else if (rim.empty() || (rim[c.near] == 0 && !(c.cosine < 0 && c.height < 0))) {
+    } else if (rim.empty() || (!at_rim && !(c.cosine < 0 && c.height < 0))) {
       ++conflicts;
     }
   }
@@ -343,7 +346,7 @@ Overlap overlap(const SurfaceSamples& model, double diagonal, const Similarity& 
   return {.match = static_cast<double>(matches) / static_cast<double>(n),
           .conflict = static_cast<double>(conflicts) / static_cast<double>(n),
           .closeness = matches == 0 ? 0 : closeness / static_cast<double>(matches),
-          .stability = Slippage(matched).stability(),
+          .stability = Slippage(matched).stability(posed.tolerance()),
           .view = view.shares(n)};
 }
 

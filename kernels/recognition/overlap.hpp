@@ -60,7 +60,8 @@ struct View {
   double there = 0;    ///< Share that lies at the distance that was measured.
   double behind = 0;   ///< Share that would have hidden what was seen behind it.
   double nothing = 0;  ///< Share that lies where nothing was seen.
-  double opposed = 0;  ///< Share of those `there` near the scene's surface that do not match it.
+  /// Share of those `there` near the scene's surface, and not at its rim, that do not match it.
+  double opposed = 0;
 
   /// Returns the share that should have been seen: all but what something hides.
   double visible() const { return there + behind + nothing; }

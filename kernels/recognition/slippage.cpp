@@ -16,6 +16,8 @@ using Matrix7d = Eigen::Matrix<double, 7, 7>;
 constexpr double kLeastTurn = 0.1;
 /// The least share of the scaling in the squared length of a motion.
 constexpr double kLeastScaling = 0.1;
+/// The least tolerance, in radii. Points of a line do not move when they turn about it.
+constexpr double kLeastWay = 1e-6;
 
 }  // namespace
 
@@ -44,18 +46,29 @@ Slippage::Slippage(std::span<const OrientedPoint> surface) {
     squared += share * (p.point.cast<double>() - middle_).squaredNorm();
   if (!(squared > 0)) return;
   radius_ = std::sqrt(squared);
-  Matrix7d sum = Matrix7d::Zero();
-  for (const OrientedPoint& p : surface)
-    sum.selfadjointView<Eigen::Lower>().rankUpdate(
-        plane_constraint((p.point.cast<double>() - middle_) / radius_, p.normal.cast<double>()),
-        share);
-  const Eigen::SelfAdjointEigenSolver<Matrix7d> solver(sum);
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const OrientedPoint& p : surface) {
+    const Vector3d arm = (p.point.cast<double>() - middle_) / radius_;
+    across_.selfadjointView<Eigen::Lower>().rankUpdate(
+        plane_constraint(arm, p.normal.cast<double>()), share);
+    spread += share * arm * arm.transpose();
+  }
+  // Points move by turn x arm + shift + scaling arm. The arms have the mean 0 and the mean
+  // square 1.
+  ways_.setIdentity();
+  ways_.topLeftCorner<3, 3>() -= spread;
+  const Eigen::SelfAdjointEigenSolver<Matrix7d> solver(across_);
   held_ = solver.eigenvalues().cwiseMax(0);
   motions_ = solver.eigenvectors();
 }
 
-double Slippage::stability() const {
-  return held_[1];
+double Slippage::stability(double tolerance) const {
+  if (!(radius_ > 0)) return 0;
+  const double least_way = std::max(tolerance / radius_, kLeastWay);
+  const Matrix7d ways = ways_ + least_way * least_way * Matrix7d::Identity();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix7d> solver(across_, ways,
+                                                                  Eigen::EigenvaluesOnly);
+  return std::max(solver.eigenvalues()[1], 0.0);
 }
 
 std::optional<Axis> Slippage::free_rotation(double most) const {

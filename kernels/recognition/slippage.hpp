@@ -42,14 +42,19 @@ struct ScalingMotion {
 /// it slips. They have no unit, because lengths are measured in radii of the surface. A surface of
 /// revolution slips in one way, cylinders and cones in two, planes and spheres in more. A surface
 /// that slips in two ways is no proof of where a model lies. Source: Gelfand et al. 2003 (stable
-/// ICP), Gelfand and Guibas 2004. Differs: scaling is a seventh motion.
+/// ICP), Gelfand and Guibas 2004. Differs: scaling is a seventh motion; stability compares the ways
+/// of the points, not motions.
 class Slippage {
  public:
   /// Examines a surface. Without points it is held by nothing.
   explicit Slippage(std::span<const OrientedPoint> surface);
 
-  /// Returns the second smallest of the seven numbers.
-  double stability() const;
+  /// Returns how firmly the surface is held, from 0 to 1. It slips most easily by the motion of
+  /// which the smallest share of the points' squared ways leads out of their planes. The result is
+  /// that share for the second of seven such motions. A thin rod that is not round turns about its
+  /// axis by short ways, but out of its planes, so it is held; a round one is not. `tolerance` is
+  /// the length of ways that are too short to tell.
+  double stability(double tolerance) const;
 
   /// Returns the axis about which the surface can turn along itself. The result is empty unless the
   /// motion that is held least is a rotation, and is held by no more than `most`.
@@ -63,6 +68,8 @@ class Slippage {
  private:
   Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();
   double radius_ = 0;
+  Eigen::Matrix<double, 7, 7> across_ = Eigen::Matrix<double, 7, 7>::Zero();  ///< Out of planes.
+  Eigen::Matrix<double, 7, 7> ways_ = Eigen::Matrix<double, 7, 7>::Zero();    ///< In all.
   Constraint held_ = Constraint::Zero();  ///< The seven numbers, ascending.
   /// Column i is the motion that held_[i] belongs to, of length 1.
   Eigen::Matrix<double, 7, 7> motions_ = Eigen::Matrix<double, 7, 7>::Zero();

@@ -33,11 +33,26 @@ TEST(ScoreTest, EachWeightIsTheExponentOfItsFactor) {
   pose.overlap.conflict = 1;
   EXPECT_NEAR(score_of(pose, weights), std::pow(0.5, weights.unopposed), 1e-9);
   pose = perfect_pose();
+  pose.support = 0;  // features hold it by nothing
   pose.overlap.stability = weights.half_held;
-  EXPECT_NEAR(score_of(pose, weights), std::pow(0.5, weights.held), 1e-9);
+  EXPECT_NEAR(score_of(pose, weights), std::pow(0.5, weights.held + weights.explained), 1e-9);
   pose = perfect_pose();
   pose.support = 0;
   EXPECT_NEAR(score_of(pose, weights), std::pow(0.5, weights.explained), 1e-9);
+}
+
+/// A surface that slips is held by the features on it.
+TEST(ScoreTest, FeaturesHoldAModelToo) {
+  const ScoreWeights weights;
+  ExaminedPose pose = perfect_pose();
+  pose.overlap.stability = 0;
+  pose.support = weights.half_held / weights.hold_of_support;
+  const double wanted =
+      (weights.prior_support + pose.support) / (2 * weights.prior_support + pose.support);
+  EXPECT_NEAR(score_of(pose, weights),
+              std::pow(0.5, weights.held) * std::pow(wanted, weights.explained), 1e-9);
+  pose.support = 0;
+  EXPECT_EQ(score_of(pose, weights), 0);
 }
 
 /// All of the model matches a quarter of the scene: only the share that is explained counts.
@@ -70,7 +85,7 @@ TEST(ViewScoreTest, WhatIsNotSeenWhereItShouldBeCounts) {
   EXPECT_NEAR(view_score_of(pose, {}), 0.25, 1e-9);
   pose = perfect_view();
   pose.overlap.view.behind = 0.6;
-  EXPECT_NEAR(view_score_of(pose, {}), 1.0 / 16, 1e-9);
+  EXPECT_NEAR(view_score_of(pose, {}), std::pow(0.25, 2 + ViewTuning{}.hides_nothing), 1e-9);
   pose = perfect_view();
   pose.overlap.view.opposed = 0.2;
   EXPECT_NEAR(view_score_of(pose, {}), std::pow(0.5, ViewTuning{}.score.unopposed), 1e-9);

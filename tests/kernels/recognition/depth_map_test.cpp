@@ -105,5 +105,31 @@ TEST(OverlapViewTest, HiddenAndFarSidesDoNotCount) {
   EXPECT_NEAR(view_at({5, 0, 0}).nothing, 0.5 * (1 - 0.35), 0.02);
 }
 
+/// Of a plate with a bevel along one side, the face alone was seen. The bevel lies where its rim
+/// is, and faces another way.
+TEST(OverlapViewTest, WhatLiesAtARimIsNotOpposed) {
+  SurfaceSamples scene = plate();
+  SurfaceSamples model = scene;
+  std::size_t bevel = 0;
+  for (std::size_t i = 0; i < scene.points.size(); ++i) {
+    if (scene.points[i].x() < 0.97F) continue;
+    model.normals[i] = Vector3f(1, 0, 1).normalized();
+    ++bevel;
+  }
+  const DepthMap map(scene, Vector3d(0, 0, 200));
+  const SampleTree tree(scene);
+  OverlapOptions options;
+  options.depths = &map;
+  const auto opposed = [&](auto rim) {
+    scene.rim.resize(scene.points.size());
+    for (std::size_t i = 0; i < scene.points.size(); ++i)
+      scene.rim[i] = rim(scene.points[i]) ? 1 : 0;
+    return overlap(model, std::sqrt(8.0), {}, tree, options, 4000).view.opposed;
+  };
+  const double share = static_cast<double>(bevel) / static_cast<double>(model.points.size());
+  EXPECT_EQ(opposed([](const Vector3f& p) { return p.x() > 0.97F; }), 0);
+  EXPECT_NEAR(opposed([](const Vector3f& p) { return p.x() < -0.97F; }), share, 1e-9);
+}
+
 }  // namespace
 }  // namespace semigeo::kernels
