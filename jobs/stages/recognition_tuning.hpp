@@ -175,13 +175,13 @@ struct ThirdLookTuning {
 /// wanted = (prior + support) / (2 prior + support).
 struct ScoreWeights {
   /// The exponent of closeness. A right pose most of all lies close to the surface.
-  double closeness = 8;
+  double closeness = 10;
   /// The exponent of `unopposed`. A right pose is not contradicted.
   double unopposed = 1.5;
   /// The exponent of `held`. A right pose is held fast by what matches.
   double held = 0.75;
   /// The hold of which `held` is one half.
-  double half_held = 0.03;
+  double half_held = 0.05;
   /// What a triplet adds to the hold: features hold a model where its surface can slip.
   double hold_of_support = 4e-4;
   /// The exponent of `explained` and `wanted`. The share of the scene that is explained says less,
