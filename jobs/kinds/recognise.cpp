@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// It is raised whenever the same scene, library and parameters give other bytes.
-static constexpr const char* kVersion = "recognise 10";
+static constexpr const char* kVersion = "recognise 11";
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RecogniseJobResult, features, triplets, objects)
 
