@@ -6,6 +6,8 @@
 #include <span>
 #include <utility>
 
+#include "jobs/stages/for_each_on.hpp"
+
 namespace semigeo::jobs {
 namespace {
 
@@ -207,14 +209,9 @@ class Matcher {
     result.compared = comparisons();
     const std::size_t models = library_.models().size();
     const std::size_t groups = std::min(kGroups, found.size());
-    const auto for_each = [&](std::size_t count, const auto& body) {
-      context.workers.for_blocks(static_cast<std::int64_t>(count), 1,
-                                 [&](engine::IndexRange range) {
-                                   for (auto i = range.begin; i < range.end; ++i)
-                                     body(static_cast<std::size_t>(i));
-                                 });
-    };
-    const auto for_each_match = [&](std::size_t group, const auto& body) {
+    const auto for_each = for_each_on(context.workers);
+    const auto for_each_match = [&](std::int64_t index, const auto& body) {
+      const auto group = static_cast<std::size_t>(index);
       const std::size_t end = (group + 1) * found.size() / groups;
       for (std::size_t block = group * found.size() / groups; block < end; ++block)
         for (const TripletMatch& match : found[block]) body(match);
@@ -222,7 +219,7 @@ class Matcher {
     // Where the next match of each model in each group belongs; at first how many there are.
     std::vector<std::vector<std::int64_t>> next(groups, std::vector<std::int64_t>(models));
     std::vector<std::uint32_t> of_triangle(scene_.size());  // there are at most as many triangles
-    for_each(groups, [&](std::size_t group) {
+    for_each(std::ssize(next), [&](std::int64_t group) {
       for_each_match(group, [&](const TripletMatch& match) {
         ++next[group][match.model];
         std::atomic_ref(of_triangle[match.triangle]).fetch_add(1, std::memory_order_relaxed);
@@ -236,7 +233,7 @@ class Matcher {
     }
     result.first.push_back(first);
     result.matches.resize(first);
-    for_each(groups, [&](std::size_t group) {
+    for_each(std::ssize(next), [&](std::int64_t group) {
       for_each_match(group, [&](const TripletMatch& match) {
         TripletMatch& placed = result.matches[next[group][match.model]++];
         placed = match;
@@ -244,7 +241,7 @@ class Matcher {
       });
     });
     result.votes.assign(models, 0);
-    for_each(models, [&](std::size_t model) {
+    for_each(std::ssize(result.votes), [&](std::int64_t model) {
       for (auto i = result.first[model]; i < result.first[model + 1]; ++i)
         result.votes[model] += result.matches[i].weight;
     });
